@@ -16,10 +16,12 @@
 
 namespace stiction::sim {
 
-class EncoderMountModel {
+// A template over the number in which it computes: a double, or a batch whose lanes are mounts.
+template <class Real>
+class EncoderMountModelOf {
  public:
   // Without parameters the mount is rigid.
-  EncoderMountModel(const std::optional<machine::EncoderMountParameters>& mount, double step) {
+  EncoderMountModelOf(const std::optional<machine::EncoderMountParameters>& mount, double step) {
     if (!mount) return;
     const double w = 2.0 * std::numbers::pi * mount->natural_frequency;
     const double decay = mount->damping_ratio * w;
@@ -39,24 +41,25 @@ class EncoderMountModel {
   }
 
   // One step in which the carriage's velocity changes evenly by `change` (m/s).
-  void advance(double change) {
-    const double next = trace_ * y_ - determinant_ * before_ + change;
+  void advance(Real change) {
+    const Real next = trace_ * y_ - determinant_ * before_ + change;
     before_ = y_;
     y_ = next;
   }
 
-  double deflection() const { return of_state(deflection_); }  // m, x_j - x
-  double velocity() const { return of_state(velocity_); }      // m/s, x_j' - x'
+  Real deflection() const { return of_state(deflection_); }  // m, x_j - x
+  Real velocity() const { return of_state(velocity_); }      // m/s, x_j' - x'
 
  private:
   struct Weights {
-    double y = 0.0, before = 0.0;
+    Real y = 0.0, before = 0.0;
   };
-  double of_state(const Weights& w) const { return w.y * y_ + w.before * before_; }
+  Real of_state(const Weights& w) const { return w.y * y_ + w.before * before_; }
 
-  double trace_ = 0.0, determinant_ = 0.0;
+  Real trace_ = 0.0, determinant_ = 0.0;
   Weights deflection_, velocity_;
-  double y_ = 0.0, before_ = 0.0;
+  Real y_ = 0.0, before_ = 0.0;
 };
+using EncoderMountModel = EncoderMountModelOf<double>;
 
 }  // namespace stiction::sim

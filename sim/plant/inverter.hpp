@@ -63,6 +63,11 @@ class InverterModel {
     return {commands_[oldest_], between, commands_[second], change_};
   }
 
+  double voltage_limit() const { return voltage_limit_; }    // V
+  int change() const { return change_; }                     // steps, as in Acting
+  double share_before() const { return share_before_; }      // of the step in which the voltage changes
+  std::size_t commands() const { return commands_.size(); }  // that are on their way
+
   void switch_off() {
     command_ = {};
     std::fill(commands_.begin(), commands_.end(), PhaseValues{});

@@ -43,6 +43,10 @@ ROOMS = {
         "firmware/machine/model": "the drive's configuration is computed from a machine",
         f"{FIRMWARE}/*": "and is the cascade's own",
     },
+    "firmware/machine/batch": {
+        "firmware/machine/configuration": "a lane of a batch has the signals of doubles",
+        f"{FIRMWARE}/*": "and the laws of the cascade",
+    },
     "firmware/version": {},
     "firmware/stictiond": {
         "firmware/version": "a programme says which it is,",
@@ -72,6 +76,7 @@ ROOMS = {
         "sim": "are written from those of the simulation",
     },
     "sim/plant/friction": {
+        f"{FIRMWARE}/number": "choices read alike for one axis and for a batch of them",
         "firmware/machine/model": "a law describes its parameters, and those of a machine say which acts",
         "sim/number": "and is written in arithmetic that is the same everywhere",
     },
@@ -87,6 +92,14 @@ ROOMS = {
         "firmware/machine/*": "on an axis as its file describes it",
         "host/diagnose/*": "in the residual of a diagnosis",
         "host/identify": "with the columns of the fits",
+    },
+    "sim/plant/batch": {
+        "firmware/machine/batch": "the plant's numbers are batches",
+        "firmware/machine/model": "a machine says what is simulated",
+        "sim/number": "with the bits of one axis' arithmetic",
+        "sim/plant": "the motors are those of one axis",
+        "sim/plant/friction": "and so is friction",
+        "sim/effects": "axes with effects go on alone",
     },
     "sim/plant": {
         "sim/number": "the mathematics that its parts share",
@@ -121,6 +134,11 @@ ROOMS = {
         "host/log": "frequency responses are measured from logs",
         "sim/*": "with the controllers of a machine, and become results",
         "firmware/machine/*": "as its file describes it",
+    },
+    "host/batch": {
+        "sim/*": "many axes are simulated at once",
+        "firmware/machine/*": "as their files describe them",
+        f"{FIRMWARE}/*": "with the cascade of the drive",
     },
     "host/simulate": {
         "host/log": "a run can be logged",

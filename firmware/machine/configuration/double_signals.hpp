@@ -65,6 +65,8 @@ inline bool exceeds(Real x, Real bound) { return std::abs(x.value) > bound.value
 
 struct DoubleSignals {
   static constexpr const char* name = "double";
+  template <class T>
+  using Each = T;  // of this one axis
 
   using Position = Real;
   using Distance = Real;

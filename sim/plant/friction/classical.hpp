@@ -39,20 +39,23 @@ class Classical {
         step_(body.step) {}
 
   Real advance(Real velocity, Real force) {
-    if (velocity == 0.0) return start(force, step_);
+    const auto rests = velocity == 0.0;
+    if (all(rests)) return start(force, step_);
     const Real direction = copy_sign(Real(1.0), velocity);
     const Real next = slide(velocity, force, direction, step_);
-    if (next * direction > 0.0) return next;
+    const auto goes_on = next * direction > 0.0 && !rests;
+    if (all(goes_on)) return next;
     const Real until_stop = step_ * velocity / (velocity - next);
-    return start(force, step_ - until_stop);
+    return select(goes_on, next, start(force, select(rests, step_, Real(step_ - until_stop))));
   }
   Real steady_force(Real velocity, Real direction) const { return coulomb_ * direction + viscous_ * velocity; }
   std::optional<Contact> contact() const { return {}; }
 
  private:
   Real start(Real force, Real duration) const {
-    if (absolute(force) <= static_level_) return 0.0;
-    return slide(0.0, force, copy_sign(Real(1.0), force), duration);
+    const auto sticks = absolute(force) <= static_level_;
+    if (all(sticks)) return 0.0;
+    return select(sticks, Real(0.0), slide(0.0, force, copy_sign(Real(1.0), force), duration));
   }
   Real slide(Real velocity, Real force, Real direction, Real duration) const {
     const Real gain = duration / mass_;

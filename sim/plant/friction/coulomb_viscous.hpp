@@ -31,7 +31,7 @@ class CoulombViscous {
       : coulomb_(p.coulomb), viscous_(p.viscous), gain_(body.step / body.mass) {}
 
   Real advance(Real velocity, Real force) {
-    const Real sign = velocity > 0.0 ? 1.0 : velocity < 0.0 ? -1.0 : 0.0;
+    const Real sign = select(velocity > 0.0, Real(1.0), select(velocity < 0.0, Real(-1.0), Real(0.0)));
     return (velocity + gain_ * (force - coulomb_ * sign)) / (1.0 + gain_ * viscous_);
   }
   Real steady_force(Real velocity, Real direction) const { return coulomb_ * direction + viscous_ * velocity; }

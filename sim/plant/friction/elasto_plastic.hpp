@@ -87,12 +87,14 @@ class ElastoPlastic {
   Real move_contact(Real velocity) {
     const Real speed = absolute(velocity), travelled = stiffness_ * step_ * velocity;
     const Real most = level(velocity);
-    const Real share = spring_ * velocity > 0.0 ? plastic(absolute(spring_), most) : Real(0.0);
+    const auto loads = spring_ * velocity > 0.0;
+    Real share = 0.0;
+    if (any(loads)) share = select(loads, plastic(absolute(spring_), most), share);
     const Real rate = share * stiffness_ * step_ * speed / most;
     const Real change = (travelled - rate * spring_) / relaxation_divisor(rate);
     // A long step must not leap from the elastic part over the level.
-    const Real bound = absolute(spring_) > most ? absolute(spring_) : most, next = spring_ + change;
-    spring_ = absolute(next) > bound ? copy_sign(bound, next) : next;
+    const Real bound = select(absolute(spring_) > most, Real(absolute(spring_)), most), next = spring_ + change;
+    spring_ = select(absolute(next) > bound, Real(copy_sign(bound, next)), next);
     return spring_ + damping_ * change;
   }
 
@@ -100,14 +102,17 @@ class ElastoPlastic {
   // k_s g(v), N.
   Real level(Real velocity) const {
     const Real ratio = velocity / stribeck_velocity_;
-    return rise_ == 0.0 ? coulomb_ : coulomb_ + rise_ * exponential(-ratio * ratio);
+    if (all(rise_ == 0.0)) return coulomb_;
+    return coulomb_ + rise_ * exponential(-ratio * ratio);
   }
   // a at a spring force (N, against the level `most`) that the motion loads further.
   Real plastic(Real spring, Real most) const {
-    if (spring <= elastic_) return 0.0;
-    if (spring >= most) return 1.0;
+    const auto elastic = spring <= elastic_, full = spring >= most;
+    if (all(elastic)) return 0.0;
+    if (all(full)) return 1.0;
     constexpr double pi = 3.141592653589793;
-    return 0.5 + 0.5 * sine_cosine(pi * (spring - 0.5 * (most + elastic_)) / (most - elastic_)).sine;
+    const Real between = 0.5 + 0.5 * sine_cosine(pi * (spring - 0.5 * (most + elastic_)) / (most - elastic_)).sine;
+    return select(elastic, Real(0.0), select(full, Real(1.0), between));
   }
 
   Real coulomb_, rise_, stribeck_velocity_, stiffness_;

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "firmware/machine/model/parameter.hpp"
+#include "stiction/number/choice.hpp"
 
 namespace stiction::sim {
 

@@ -41,9 +41,10 @@ class LinearRamp {
   Real advance(Real velocity, Real force) {
     const Real free = velocity + gain_ * force;
     const Real slow = free / (1.0 + gain_ * slope_);
-    if (absolute(slow) <= break_velocity_) return slow;
+    const auto on_ramp = absolute(slow) <= break_velocity_;
+    if (all(on_ramp)) return slow;
     const Real offset = (coulomb_ - break_velocity_ * viscous_) * copy_sign(Real(1.0), free);
-    return (free - gain_ * offset) / (1.0 + gain_ * viscous_);
+    return select(on_ramp, slow, Real((free - gain_ * offset) / (1.0 + gain_ * viscous_)));
   }
   // The direction matters nowhere: at standstill the force is zero.
   Real steady_force(Real velocity, Real) const {

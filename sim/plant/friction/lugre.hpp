@@ -5,6 +5,8 @@
 // step, stiffness and velocity.
 #pragma once
 
+#include <concepts>
+
 #include "sim/number/arithmetic.hpp"
 #include "sim/plant/friction/law.hpp"
 #include "sim/plant/friction/one_minus_exp.hpp"
@@ -51,11 +53,10 @@ class LuGre {
       : coulomb_(p.coulomb),
         rise_(p.coulomb * (p.static_ratio - 1.0)),
         per_stribeck_velocity_(1.0 / p.stribeck_velocity),
-        stribeck_(p.static_ratio > 1.0),
         stiffness_(p.stiffness),
         stiffness_step_(p.stiffness * body.step),
         creep_(p.coulomb / stiffness_step_),
-        series_up_to_(stribeck_ ? -1.0 : detail::longest * creep_),
+        series_up_to_(p.static_ratio > 1.0 ? -1.0 : detail::longest * creep_),
         square_(detail::divisor_c2 / creep_),
         damping_(2.0 * p.damping_ratio * square_root(p.stiffness * body.mass) / stiffness_step_),
         decay_(1.0 / (1.0 + body.step / body.mass * p.viscous)),
@@ -84,12 +85,23 @@ class LuGre {
     const Real speed = absolute(velocity);
     Real most = coulomb_;  // k_s g(v)
     Real divisor = 0.0;    // relaxation_divisor(speed / creep) times creep, the speed that creeps g(v) in a step
-    if (speed <= series_up_to_) [[likely]] {
+    if constexpr (std::same_as<Real, double>) {
+      if (speed <= series_up_to_) [[likely]] {
+        divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
+      } else {
+        if (series_up_to_ < 0.0) most = level(velocity);
+        const Real creep = most / stiffness_step_;
+        divisor = relaxation_divisor(speed / creep) * creep;
+      }
+    } else {  // the same lane by lane
+      const auto in_series = speed <= series_up_to_;
       divisor = creep_ + speed * (detail::divisor_c1 + speed * square_);
-    } else {
-      if (stribeck_) most = level(velocity);
-      const Real creep = most / stiffness_step_;
-      divisor = relaxation_divisor(speed / creep) * creep;
+      if (!all(in_series)) {
+        // Where friction does not rise from Coulomb's, the level is that to the bit.
+        if (any(series_up_to_ < 0.0)) most = level(velocity);
+        const Real creep = most / stiffness_step_;
+        divisor = select(in_series, divisor, relaxation_divisor(speed / creep) * creep);
+      }
     }
     const Real change = (most * velocity - speed * spring_) / divisor;
     spring_ += change;
@@ -106,11 +118,10 @@ class LuGre {
   Real coulomb_;                // F_C
   Real rise_;                   // F_Ts - F_C
   Real per_stribeck_velocity_;  // 1 / v_s
-  bool stribeck_;               // whether g depends on v
   Real stiffness_;              // k_s
   Real stiffness_step_;         // k_s times step
   Real creep_;                  // m/s that creeps F_C / k_s in a step
-  Real series_up_to_;           // m/s up to which the series holds; one test for this and Stribeck's
+  Real series_up_to_;           // m/s up to which the series holds; below 0 where g depends on v
   Real square_;                 // s/m, of the speed's square in the divisor
   Real damping_;                // b_s / (k_s step)
   Real decay_;                  // of the velocity by viscous friction in a step

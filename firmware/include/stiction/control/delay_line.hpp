@@ -2,8 +2,10 @@
 #pragma once
 
 #include <array>
+#include <concepts>
 #include <cstdint>
 
+#include "stiction/number/choice.hpp"
 #include "stiction/number/fixed.hpp"
 
 namespace stiction {
@@ -23,6 +25,11 @@ class DelayLine {
   }
   // The value `ticks` pushes before the newest, at most `longest`.
   constexpr const Value& at(std::uint32_t ticks) const { return past_[(newest_ - ticks) & longest]; }
+  // The same of a batch, of which each axis has `ticks` of its own.
+  template <class Ticks>
+  constexpr Value at(const Ticks& ticks) const requires(!std::integral<Ticks>) {
+    return from_rows(past_, newest_, ticks);
+  }
 
  private:
   std::array<Value, Length> past_{};
@@ -38,7 +45,7 @@ constexpr Signal between(Signal from, Signal to, typename S::TickFraction fracti
 // The signal at `ticks` and a fraction of a tick before the newest; reads two values, the older one at ticks + 1.
 // `line`: the signal's past; `ticks`: 0 to longest - 1; `fraction`: 0 to 1.
 template <class S, class Signal, std::uint32_t Length>
-constexpr Signal read_between(const DelayLine<Signal, Length>& line, std::uint32_t ticks,
+constexpr Signal read_between(const DelayLine<Signal, Length>& line, Each<S, std::uint32_t> ticks,
                               typename S::TickFraction fraction) {
   return between<S>(line.at(ticks), line.at(ticks + 1), fraction);
 }

@@ -13,6 +13,7 @@
 #include "stiction/control/compensation_kind.hpp"
 #include "stiction/control/delay_line.hpp"
 #include "stiction/control/limit.hpp"
+#include "stiction/number/choice.hpp"
 #include "stiction/number/fixed.hpp"
 
 namespace stiction {
@@ -72,11 +73,19 @@ struct FrictionFeedforward {
   }
 
   static constexpr typename S::Current sliding(const Config& config, typename S::Velocity v) {
-    const bool backward = v < typename S::Velocity{};
-    const auto& table = backward ? config.backward : config.forward;
-    const auto [node, fraction] = S::speed_place(backward ? opposite(v) : v);
-    const auto current = between<S>(table[node], table[node + 1], fraction);
-    return backward ? opposite(current) : current;
+    if constexpr (OneAxis<S>) {
+      const bool backward = v < typename S::Velocity{};
+      const auto& table = backward ? config.backward : config.forward;
+      const auto [node, fraction] = S::speed_place(backward ? opposite(v) : v);
+      const auto current = between<S>(table[node], table[node + 1], fraction);
+      return backward ? opposite(current) : current;
+    } else {  // each axis' table at a place of its own
+      const auto backward = v < typename S::Velocity{};
+      const auto place = S::speed_place(select(backward, opposite(v), v));
+      const auto found = S::entries(backward, config.backward, config.forward, place.node);
+      const auto current = between<S>(found.below, found.above, place.fraction);
+      return select(backward, opposite(current), current);
+    }
   }
 };
 

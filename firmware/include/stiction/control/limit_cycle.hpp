@@ -5,12 +5,15 @@
 
 #include <cstdint>
 
+#include "stiction/number/choice.hpp"
+
 namespace stiction {
 
+template <class S>
 struct LimitCycle {
   struct State {
-    std::int32_t side = 0;      // the limit that was touched last, -1 or 1
-    std::uint32_t changes = 0;  // from one limit to the other in this window
+    Each<S, int> side{};               // the limit that was touched last, -1 or 1
+    Each<S, std::uint32_t> changes{};  // from one limit to the other in this window
   };
 
   // Changes within a window that make a fault: no machine motion reverses its full force at 48 Hz.
@@ -23,14 +26,17 @@ struct LimitCycle {
   static constexpr void advance_window(std::int32_t& ticks_left, std::uint32_t window_ticks, States&... states) {
     if (--ticks_left < 0) {
       ticks_left = static_cast<std::int32_t>(window_ticks) - 1;
-      ((states.changes = 0), ...);
+      ((states.changes = {}), ...);
     }
   }
 
   // `side`: -1, 0 or 1, the limit that holds the output back in this tick. True when the window has too many changes.
-  static constexpr bool step(State& state, int side) {
+  static constexpr Each<S, bool> step(State& state, Each<S, int> side) {
     state.changes += side * state.side < 0;
-    state.side = side != 0 ? side : state.side;
+    if constexpr (OneAxis<S>)
+      state.side = side != 0 ? side : state.side;
+    else
+      state.side = select(side != 0, side, state.side);
     return state.changes > changes_allowed;
   }
 };

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "stiction/number/choice.hpp"
 #include "stiction/number/fixed.hpp"
 
 namespace stiction {
@@ -21,17 +22,17 @@ enum class VelocityFeedback : std::uint8_t {
 template <class S>
 struct VelocityEstimator {
   struct State {
-    typename S::Position x1{}, x2{};    // the last sample and the one before
-    std::int64_t t1_ns = 0, t2_ns = 0;  // their times
+    typename S::Position x1{}, x2{};         // the last sample and the one before
+    Each<S, std::int64_t> t1_ns{}, t2_ns{};  // their times
   };
   struct Estimate {
     typename S::Velocity velocity;
-    std::int64_t time_ns;  // the time at which the carriage had it, in the mean
+    Each<S, std::int64_t> time_ns;  // the time at which the carriage had it, in the mean
   };
 
   // A start at rest: as if the samples before had been the same. `x`: position, m; `t_ns`: its time stamp; `period_ns`:
   // of the samples, above 0.
-  static constexpr State start(typename S::Position x, std::int64_t t_ns, std::int64_t period_ns) {
+  static constexpr State start(typename S::Position x, Each<S, std::int64_t> t_ns, std::int64_t period_ns) {
     return {x, x, t_ns - period_ns, t_ns - 2 * period_ns};
   }
 
@@ -39,18 +40,19 @@ struct VelocityEstimator {
   // samples before; `kind`: the method; `x`: the sample, m, and `t_ns`, its time stamp; `given`: velocity that came
   // with it, m/s, which the kind given returns; `saturations`: counts results that exceed the format.
   static constexpr Estimate estimate(const State& state, VelocityFeedback kind, typename S::Position x,
-                                     std::int64_t t_ns, typename S::Velocity given, SaturationCounter& saturations) {
+                                     Each<S, std::int64_t> t_ns, typename S::Velocity given,
+                                     SaturationCounter& saturations) {
     if (kind == VelocityFeedback::given) return {given, t_ns};
     const bool mean = kind == VelocityFeedback::mean_difference;
     const auto base = mean ? state.x2 : state.x1;
-    const std::int64_t base_ns = mean ? state.t2_ns : state.t1_ns;
+    const auto base_ns = mean ? state.t2_ns : state.t1_ns;
     const auto motion = narrow<typename S::Step>(x - base, saturations);
     const auto velocity = narrow<typename S::Velocity>(motion * S::rate(t_ns - base_ns), saturations);
     return {velocity, base_ns + ((t_ns - base_ns) >> 1)};
   }
 
   // Makes a sample part of the `state`. `x`: position, m; `t_ns`: its time stamp, later than that of the sample before.
-  static constexpr void push(State& state, typename S::Position x, std::int64_t t_ns) {
+  static constexpr void push(State& state, typename S::Position x, Each<S, std::int64_t> t_ns) {
     state = {x, state.x1, t_ns, state.t1_ns};
   }
 };
@@ -69,13 +71,20 @@ struct SpeedDelay {
     state.past[0] = v;
   }
 
+  // The speed `ticks` ago.
+  static constexpr typename S::Velocity at(const State& state, Each<S, int> ticks) {
+    if constexpr (OneAxis<S>)
+      return state.past[static_cast<std::size_t>(ticks)];
+    else
+      return from_places(state.past, ticks);
+  }
+
   // Delays below 0 and beyond the line's length read its ends. `state`: the delay line; `delay`: age of the velocity
   // in ticks; `saturations`: counts results that exceed the format.
   static constexpr typename S::Velocity read(const State& state, typename S::Ticks delay,
                                              SaturationCounter& saturations) {
     const auto [whole, fraction] = S::split(delay, length - 2);
-    const auto newer = state.past[static_cast<std::size_t>(whole)];
-    const auto older = state.past[static_cast<std::size_t>(whole + 1)];
+    const auto newer = at(state, whole), older = at(state, whole + 1);
     return narrow<typename S::Velocity>(newer * S::complement(fraction) + older * fraction, saturations);
   }
 };

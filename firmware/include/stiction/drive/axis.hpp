@@ -16,6 +16,7 @@
 #include "stiction/drive/axis_signals.hpp"
 #include "stiction/drive/exchange.hpp"
 #include "stiction/drive/faults.hpp"
+#include "stiction/number/choice.hpp"
 #include "stiction/number/fixed.hpp"
 #include "stiction/number/trigonometry.hpp"
 
@@ -65,10 +66,10 @@ struct AxisConfig {
 
 template <class S>
 struct AxisState {
-  bool running = false;
-  Fault fault = Fault::none;
-  std::int64_t fault_time_ns = 0;
-  std::uint8_t missed_positions = 0;
+  Each<S, bool> running{};
+  Each<S, Fault> fault{};
+  Each<S, std::int64_t> fault_time_ns{};
+  Each<S, std::uint8_t> missed_positions{};
   typename S::Distance e_held{};
   typename VelocityEstimator<S>::State estimator{};
   typename VelocityEstimator<S>::Estimate velocity{};
@@ -77,8 +78,9 @@ struct AxisState {
   typename Notch<S>::State notch{};
   std::array<typename CurrentPi<S>::State, 3> current_pi{};
   std::int32_t cycle_ticks_left = 0;  // of the window of both limit cycles
-  LimitCycle::State current_cycle{};
-  LimitCycle::State voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
+  typename LimitCycle<S>::State current_cycle{};
+  typename LimitCycle<S>::State
+      voltage_cycle{};  // of the first phase: an unstable current loop oscillates in every phase
   SaturationCounter saturations{};
 };
 
@@ -93,22 +95,22 @@ class Axis {
 
   constexpr const AxisConfig<S>& config() const { return config_; }
   constexpr const AxisState<S>& state() const { return state_; }
-  constexpr Fault fault() const { return state_.fault; }
-  constexpr std::int64_t fault_time_ns() const { return state_.fault_time_ns; }
+  constexpr Each<S, Fault> fault() const { return state_.fault; }
+  constexpr Each<S, std::int64_t> fault_time_ns() const { return state_.fault_time_ns; }
 
   // Starts control at rest at the measured position and clears a fault. Call before the first tick.
   constexpr void start(const Feedback<S>& feedback) {
     state_ = {};
-    state_.running = true;
+    state_.running = Each<S, bool>{true};
     state_.estimator = VelocityEstimator<S>::start(feedback.position, feedback.position_time_ns, config_.period_ns);
     state_.velocity = {{}, feedback.position_time_ns};
   }
 
   // Takes the power off without a fault; the velocity is still estimated. start() begins again.
-  constexpr void stop() { state_.running = false; }
+  constexpr void stop() { state_.running = {}; }
 
   // Latches a fault that was seen outside of the axis, such as a set-point that could not be represented.
-  constexpr void trip(Fault fault, std::int64_t now_ns) {
+  constexpr void trip(Fault fault, std::int64_t now_ns) requires OneAxis<S> {
     if (state_.fault != Fault::none) return;
     state_.fault = fault;
     state_.fault_time_ns = now_ns;
@@ -161,8 +163,8 @@ class Axis {
     Command<S> command;
     s.i_integral = state_.velocity_pi.integral;
     s.i_phase = feedback.current;
-    s.limiting.voltage = false;
-    int voltage_side = 0;
+    s.limiting.voltage = {};
+    Each<S, int> voltage_side{};
     switch (config_.current_loop) {
       case CurrentLoop::three_phase:
         voltage_side = control_phases(s, command);
@@ -179,10 +181,11 @@ class Axis {
     }
     watch_cycle(state_.voltage_cycle, voltage_side, now_ns);
 
-    if (!set.valid) trip(Fault::set_point, now_ns);
+    trip_where(!set.valid, Fault::set_point, now_ns);
     supervise(feedback, s, now_ns);
     s.fault = state_.fault;
-    if (!state_.running) command = {};
+    if (!all(state_.running))
+      for (auto& u : command.voltage) assign(!state_.running, u, Voltage{});
     command.enable = state_.running;
     s.u_phase = command.voltage;
     return command;
@@ -202,17 +205,30 @@ class Axis {
   // first fault.
   [[gnu::always_inline]] constexpr void supervise(const Feedback<S>& feedback, const AxisSignals<S>& s,
                                                   std::int64_t now_ns) {
-    if (feedback.fault) trip(Fault::drive_input, now_ns);
+    trip_where(feedback.fault, Fault::drive_input, now_ns);
     const auto most = config_.over_current_fault;
-    if (exceeds(s.i, most) || exceeds(s.i_phase[0], most) || exceeds(s.i_phase[1], most) || exceeds(s.i_phase[2], most))
-      trip(Fault::over_current, now_ns);
-    if (exceeds(s.v, config_.over_speed_fault)) trip(Fault::over_speed, now_ns);
-    if (exceeds(s.e, config_.following_error_fault)) trip(Fault::following_error, now_ns);
+    trip_where(
+        exceeds(s.i, most) || exceeds(s.i_phase[0], most) || exceeds(s.i_phase[1], most) || exceeds(s.i_phase[2], most),
+        Fault::over_current, now_ns);
+    trip_where(exceeds(s.v, config_.over_speed_fault), Fault::over_speed, now_ns);
+    trip_where(exceeds(s.e, config_.following_error_fault), Fault::following_error, now_ns);
   }
 
  private:
   using Current = typename S::Current;
   using Voltage = typename S::Voltage;
+
+  // Latches the fault where the `condition` holds and none is latched yet.
+  [[gnu::always_inline]] constexpr void trip_where(Each<S, bool> condition, Fault fault, std::int64_t now_ns) {
+    if constexpr (OneAxis<S>) {
+      if (condition) trip(fault, now_ns);
+    } else if (any(condition)) {
+      const auto first = condition && state_.fault == Fault::none;
+      assign(first, state_.fault, Each<S, Fault>{fault});
+      assign(first, state_.fault_time_ns, Each<S, std::int64_t>{now_ns});
+      assign(first, state_.running, Each<S, bool>{});
+    }
+  }
 
   // The same where the set-point orders the current itself or its limit. A function of its own: nearly every tick does
   // without, and what it takes is not in theirs.
@@ -240,31 +256,52 @@ class Axis {
     s.i_set = i_set.value;
     s.limiting.current = i_set.limiting();
     VelocityPi<S>::track(config_.velocity, state_.velocity_pi, pi.beyond_format, i_wanted, i_set.value, saturations);
-    LimitCycle::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
-                               state_.voltage_cycle);
+    LimitCycle<S>::advance_window(state_.cycle_ticks_left, config_.limit_cycle_window_ticks, state_.current_cycle,
+                                  state_.voltage_cycle);
     watch_cycle(state_.current_cycle, i_set.side, now_ns);
   }
 
-  constexpr void watch_cycle(LimitCycle::State& cycle, int side, std::int64_t now_ns) {
-    if (LimitCycle::step(cycle, side)) trip(Fault::limit_cycle, now_ns);
+  constexpr void watch_cycle(typename LimitCycle<S>::State& cycle, Each<S, int> side, std::int64_t now_ns) {
+    trip_where(LimitCycle<S>::step(cycle, side), Fault::limit_cycle, now_ns);
   }
   // A sample that is not valid leaves position and velocity as they were; too many in a row are a fault.
   constexpr void take_feedback(const Feedback<S>& feedback, std::int64_t now_ns) {
     // A sample that came before is as good as none, and a stamp from the future is no stamp.
-    const bool fresh = feedback.position_valid && feedback.position_time_ns > state_.estimator.t1_ns &&
+    const auto fresh = feedback.position_valid && feedback.position_time_ns > state_.estimator.t1_ns &&
                        feedback.position_time_ns <= now_ns + config_.period_ns;
     // A tick without one takes the same work: an estimate as of standstill, which is dropped.
-    const auto x = fresh ? feedback.position : state_.estimator.x1;
-    const std::int64_t t_ns = fresh ? feedback.position_time_ns : state_.estimator.t1_ns + config_.period_ns;
+    const auto x = select(fresh, feedback.position, state_.estimator.x1);
+    const auto t_ns = select(fresh, feedback.position_time_ns, state_.estimator.t1_ns + config_.period_ns);
     auto velocity = VelocityEstimator<S>::estimate(state_.estimator, config_.velocity_feedback, x, t_ns,
                                                    feedback.velocity, state_.saturations);
-    if (!fresh) {
-      if (++state_.missed_positions > missed_positions_allowed) trip(Fault::position_lost, now_ns);
-      return;
+    if (!all(fresh)) {
+      if constexpr (OneAxis<S>) {
+        if (++state_.missed_positions > missed_positions_allowed) trip(Fault::position_lost, now_ns);
+        return;
+      } else {
+        return take_some(fresh, velocity, x, t_ns, now_ns);
+      }
     }
-    state_.missed_positions = 0;
+    state_.missed_positions = {};
     state_.velocity = velocity;
     VelocityEstimator<S>::push(state_.estimator, x, t_ns);
+  }
+
+  // Of a batch in which a sample of some axes is not `fresh`: what one axis does, lane by lane.
+  [[gnu::noinline]] constexpr void take_some(Each<S, bool> fresh,
+                                             const typename VelocityEstimator<S>::Estimate& velocity,
+                                             typename S::Position x, Each<S, std::int64_t> t_ns,
+                                             std::int64_t now_ns) requires(!OneAxis<S>) {
+    state_.missed_positions = select(fresh, Each<S, std::uint8_t>{}, state_.missed_positions + 1);
+    trip_where(state_.missed_positions > missed_positions_allowed, Fault::position_lost, now_ns);
+    assign(fresh, state_.velocity.velocity, velocity.velocity);
+    assign(fresh, state_.velocity.time_ns, velocity.time_ns);
+    auto pushed = state_.estimator;
+    VelocityEstimator<S>::push(pushed, x, t_ns);
+    assign(fresh, state_.estimator.x1, pushed.x1);
+    assign(fresh, state_.estimator.x2, pushed.x2);
+    assign(fresh, state_.estimator.t1_ns, pushed.t1_ns);
+    assign(fresh, state_.estimator.t2_ns, pushed.t2_ns);
   }
 
   // Inline by order: a call costs as much as a third of it.
@@ -283,17 +320,17 @@ class Axis {
   // These give the voltages and return the side of the limit that holds the first one back.
 
   // The side is that of the amplitude: a healthy limited phase changes side with its sine, twice an electrical turn.
-  constexpr int control_phases(AxisSignals<S>& s, Command<S>& command) {
+  constexpr Each<S, int> control_phases(AxisSignals<S>& s, Command<S>& command) {
     return control_phases_at(S::angle(s.x, config_.inverse_pole_pair_pitch), s, command);
   }
   // A function of its own: an axis whose encoder's zero is the motor's has nothing of it.
-  [[gnu::noinline]] constexpr int control_offset_phases(AxisSignals<S>& s, Command<S>& command) {
+  [[gnu::noinline]] constexpr Each<S, int> control_offset_phases(AxisSignals<S>& s, Command<S>& command) {
     const auto angle = vector_given_ ? S::turned({}, vector_)
                                      : S::turned(S::angle(s.x, config_.inverse_pole_pair_pitch), commutation_);
     return control_phases_at(angle, s, command);
   }
-  [[gnu::always_inline]] constexpr int control_phases_at(typename S::Angle angle, AxisSignals<S>& s,
-                                                         Command<S>& command) {
+  [[gnu::always_inline]] constexpr Each<S, int> control_phases_at(typename S::Angle angle, AxisSignals<S>& s,
+                                                                  Command<S>& command) {
     auto& saturations = state_.saturations;
     const auto phase = Commutation<S>::phases(angle);
     s.i = Commutation<S>::amplitude(s.i_phase, phase, saturations);
@@ -303,17 +340,17 @@ class Axis {
     auto b = control_current(1, set[1], s.i_phase[1], s);
     auto c = control_current(2, set[2], s.i_phase[2], s);
     command.voltage = {a.value, b.value, c.value};
-    return phase[0] < typename S::Sine{} ? -a.side : a.side;
+    return select(phase[0] < typename S::Sine{}, -a.side, a.side);
   }
 
-  constexpr int control_direct(AxisSignals<S>& s, Command<S>& command) {
+  constexpr Each<S, int> control_direct(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_phase[0];
     auto u = control_current(0, s.i_set, s.i, s);
     command.voltage[0] = u.value;
     return u.side;
   }
 
-  constexpr int pass_through(AxisSignals<S>& s, Command<S>& command) {
+  constexpr Each<S, int> pass_through(AxisSignals<S>& s, Command<S>& command) {
     s.i = s.i_set;
     auto u = limit(narrow<Voltage>(s.i_set, state_.saturations), config_.voltage_limit);
     s.limiting.voltage = u.limiting();

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "stiction/drive/faults.hpp"
+#include "stiction/number/choice.hpp"
 
 namespace stiction {
 
@@ -28,8 +29,8 @@ struct AxisSignals {
   typename S::Current i{};
   std::array<typename S::Current, 3> i_phase{};
   std::array<typename S::Voltage, 3> u_phase{};
-  Limiting limiting{};
-  Fault fault = Fault::none;
+  Each<S, Limiting> limiting{};
+  Each<S, Fault> fault{};
 };
 
 // The one list of the signals above: calls visit(name, unit, text, value) for each numeric one, in order. Names are

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "stiction/number/choice.hpp"
+
 namespace stiction {
 
 template <class S>
@@ -11,7 +13,7 @@ struct SetPoint {
   typename S::Position position{};
   typename S::Velocity velocity{};
   typename S::Acceleration acceleration{};
-  bool valid = true;  // false: the source had a value that is not a number or that the formats cannot hold
+  Each<S, bool> valid{true};  // false: the source had a value that is not a number or that the formats cannot hold
   typename S::Current injection{};  // a test signal added to the set current
   bool by_current = false;          // the set current is `injection` alone; position and speed are those that are shown
   bool limits_current = false;      // the set current is held to most_current in place of the axis' own limit
@@ -21,17 +23,17 @@ struct SetPoint {
 template <class S>
 struct Feedback {
   typename S::Position position{};
-  std::int64_t position_time_ns = 0;  // when the encoder sampled it, on the clock of the loop
-  bool position_valid = false;
+  Each<S, std::int64_t> position_time_ns{};  // when the encoder sampled it, on the clock of the loop
+  Each<S, bool> position_valid{};
   typename S::Velocity velocity{};               // only of encoders that give one
   std::array<typename S::Current, 3> current{};  // of the phases; of an equivalent DC motor in the first place
-  bool fault = false;                            // the power stage's or the encoder's own fault input
+  Each<S, bool> fault{};                         // the power stage's or the encoder's own fault input
 };
 
 template <class S>
 struct Command {
   std::array<typename S::Voltage, 3> voltage{};  // of the phases; of an equivalent DC motor in the first place
-  bool enable = false;                           // false: the power stage must be off
+  Each<S, bool> enable{};                        // false: the power stage must be off
 };
 
 // Switches and marks of an axis, for its supervision and its homing. True: the switch is reached, whatever its wiring.

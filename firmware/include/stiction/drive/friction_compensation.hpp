@@ -14,6 +14,7 @@
 #include "stiction/control/reversal_pulse.hpp"
 #include "stiction/drive/axis_signals.hpp"
 #include "stiction/drive/exchange.hpp"
+#include "stiction/number/choice.hpp"
 #include "stiction/number/fixed.hpp"
 
 namespace stiction {
@@ -25,7 +26,7 @@ struct FrictionCompensationConfig {
   CompensationKind kind = CompensationKind::off;
   std::uint32_t set_point_delay = 0;  // ticks, below buffer_ticks; the same for all axes of a path
   // Ticks by which the current waits for the set-points: their delay less the look-ahead. At most buffer_ticks - 2.
-  std::uint32_t lag_ticks = 0;
+  Each<S, std::uint32_t> lag_ticks{};
   typename S::TickFraction lag_fraction{};
   typename ReversalPulse<S>::Config pulse{};
   typename FrictionFeedforward<S>::Config friction{};
@@ -40,7 +41,7 @@ struct FrictionCompensationSignals {
   typename S::Current missing{};
   typename S::Current current{};
   typename S::Velocity pulse{};
-  bool dropped = false;
+  Each<S, bool> dropped{};
 };
 
 // The one list of the signals above, as for_each_signal() of an axis.
@@ -116,7 +117,7 @@ class FrictionCompensation {
 
   // What was learned so far, to be kept for the next start.
   constexpr const typename QuadrantLearning<S>::Tables& learned() const { return learning_.tables; }
-  constexpr bool dropped() const { return learning_.dropped; }
+  constexpr Each<S, bool> dropped() const { return learning_.dropped; }
 
  private:
   struct Motion {

@@ -15,6 +15,8 @@ namespace stiction {
 
 struct FixedSignals {
   static constexpr const char* name = "fixed";
+  template <class T>
+  using Each = T;  // of this one axis
 
   // Signals. Range and resolution in SI units.
   using Position = Wide<40, std::uint64_t{1} << 61>;  // +-2097 km, 0.9 pm

@@ -1,0 +1,8 @@
+// Compiled for this instruction set alone (host/CMakeLists.txt).
+#include "host/batch/kernel_of.hpp"
+
+namespace stiction::host {
+
+std::unique_ptr<Kernel> make_kernel_avx512(const BatchKind& kind) { return make_kernel<machine::Avx512>(kind); }
+
+}  // namespace stiction::host

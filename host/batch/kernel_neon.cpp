@@ -1,0 +1,8 @@
+// Compiled for this instruction set alone (host/CMakeLists.txt).
+#include "host/batch/kernel_of.hpp"
+
+namespace stiction::host {
+
+std::unique_ptr<Kernel> make_kernel_neon(const BatchKind& kind) { return make_kernel<machine::Neon>(kind); }
+
+}  // namespace stiction::host
