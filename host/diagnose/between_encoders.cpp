@@ -1,6 +1,6 @@
 #include "host/diagnose/between_encoders.hpp"
 
-#include "host/diagnose/record/encoder_difference.hpp"
+#include "host/diagnose/judge/encoder_difference.hpp"
 #include "sim/effects/effects.hpp"
 
 namespace stiction::host {

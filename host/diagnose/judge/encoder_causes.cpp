@@ -219,7 +219,7 @@ EncoderCauses find_between_encoders(const EncoderDifference& training, const Enc
     }
     finding.evidence = fmt::format(
         "Explains {:.1f} % of the variance of the difference of the two encoders (the load ahead of its motor, less "
-        "what the machine file's shaft makes of the motor's force): the twist itself was recorded.",
+        "the twist of the machine file's shaft under the force through it): the twist itself was recorded.",
         100.0 * finding.explains);
     for (const auto& confusion : sim::confusions_of(option.effect))
       finding.confused_with.push_back({confusion.other, std::string(confusion.separate_by), confusion.always, 0.0});

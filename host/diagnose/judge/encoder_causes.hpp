@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "host/diagnose/record/encoder_difference.hpp"
+#include "host/diagnose/judge/encoder_difference.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
 
 namespace stiction::host {

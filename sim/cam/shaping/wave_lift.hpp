@@ -8,8 +8,8 @@
 
 namespace stiction::sim::cam {
 
-// For the drive of a `task`, in simulation. The polynomial is as long as lets the sum come to rest within the rise. None
-// where the shortest that is tried does not.
+// For the drive of a `task`, in simulation. The polynomial is as long as lets the sum come to rest within the rise.
+// None where the shortest that is tried does not.
 std::optional<Curve> wave_lift(const ShapingTask& task);
 
 }  // namespace stiction::sim::cam

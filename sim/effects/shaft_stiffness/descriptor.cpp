@@ -25,11 +25,12 @@ EffectDescriptor shaft_stiffness() {
       .meaning = "Motor and load twist against each other by more or less than the machine file's stiffness gives.",
       .advice = "Use the stiffness of the extended file: input shaping, notches and the tuner of cams begin with it. A "
                 "shaft softer than its data sheet has a loose coupling or clamp in series, or a gear that is warm.",
-      .aliases = {{"force_constant_mismatch",
-                   "a known load on the axis at standstill: the twist under it knows no force constant"},
-                  {"mass_mismatch",
-                   "the same motion with a known inertia added to the load: a wrong inertia adds the same twist, a wrong "
-                   "stiffness a twist that is as wrong"}},
+      .aliases =
+          {{"force_constant_mismatch",
+            "a known load on the axis at standstill: the twist under it knows no force constant"},
+           {"mass_mismatch",
+            "the same motion with a known inertia added to the load: a wrong inertia adds the same twist, a wrong "
+            "stiffness a twist that is as wrong"}},
       .abscissa = Abscissa::own_force,
       .needs = {Need::second_encoder, Need::current, Need::acceleration},
       .not_in_rows = "not in two numbers per row, which know one encoder",

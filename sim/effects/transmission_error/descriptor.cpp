@@ -12,7 +12,7 @@ EffectDescriptor transmission_error() {
       .meaning = "The load is ahead of its motor and behind it in waves that return with the turns of a wheel.",
       .advice =
           "Once a turn it is an eccentric wheel, coupling or encoder ring: centre it. As often as teeth mesh it is "
-          "the toothing. What stays can be corrected by a table over the wheel's angle, or by closing the "
+          "the toothing. The remainder can be corrected by a table over the wheel's angle, or by closing the "
           "position loop on the load's encoder.",
       .aliases = {{"encoder_subdivision_error",
                    "both encoders against a third one: the reading error of an encoder stays with it"}},

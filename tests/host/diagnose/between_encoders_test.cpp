@@ -9,7 +9,7 @@
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/diagnose/judge/encoder_causes.hpp"
-#include "host/diagnose/record/encoder_difference.hpp"
+#include "host/diagnose/judge/encoder_difference.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/identify/own_identification.hpp"

@@ -1,4 +1,4 @@
-#include "host/diagnose/record/encoder_difference.hpp"
+#include "host/diagnose/judge/encoder_difference.hpp"
 
 #include <algorithm>
 #include <cmath>
