@@ -18,14 +18,14 @@
 namespace stiction::host {
 namespace {
 
-struct Option {
+struct EncoderOption {
   sim::EffectId effect;
   const EncoderCause* cause;
   double shape;
 };
 
-std::vector<Option> options_of(const machine::AxisModel& axis) {
-  std::vector<Option> options;
+std::vector<EncoderOption> encoder_options_of(const machine::AxisModel& axis) {
+  std::vector<EncoderOption> options;
   for (const auto effect : sim::all_effects())
     if (const auto* regressor = regressor_of(effect); regressor != nullptr && regressor->encoders.columns != nullptr)
       for (const double shape : regressor->encoders.grid(axis))
@@ -33,16 +33,17 @@ std::vector<Option> options_of(const machine::AxisModel& axis) {
   return options;
 }
 
-struct Term {
+struct EncoderTerm {
   std::size_t option;
   ColumnIndices columns;
   double p_value = 1.0;
 };
 
 // The columns of all options beside the nuisances, and what a choice of them explains of the training records.
-class Choice {
+class EncoderChoice {
  public:
-  Choice(const EncoderDifference& difference, const std::vector<Option>& options, const machine::AxisModel& axis)
+  EncoderChoice(const EncoderDifference& difference, const std::vector<EncoderOption>& options,
+                const machine::AxisModel& axis)
       : options_(options), axis_(axis), evidence_(difference.target(), blocks_for(difference)) {
     for (const auto& nuisance : difference.nuisances())
       if (nuisance.squaredNorm() > 0.0) nuisances_.push_back(evidence_.add({nuisance}));
@@ -55,13 +56,13 @@ class Choice {
   }
 
   // The best one is added as long as there is one.
-  std::vector<Term> run() const {
-    std::vector<Term> terms;
+  std::vector<EncoderTerm> run() const {
+    std::vector<EncoderTerm> terms;
     while (const auto best = best_beside(terms)) terms.push_back(*best);
     return terms;
   }
   // Weights of the `terms`, one behind the other, with the nuisances behind them.
-  ColumnIndices all(const std::vector<Term>& terms) const {
+  ColumnIndices all(const std::vector<EncoderTerm>& terms) const {
     ColumnIndices chosen;
     for (const auto& term : terms) chosen.insert(chosen.end(), term.columns.begin(), term.columns.end());
     chosen.insert(chosen.end(), nuisances_.begin(), nuisances_.end());
@@ -77,11 +78,11 @@ class Choice {
     return blocks_of(rows.velocity, rows.logs(),
                      static_cast<std::size_t>(std::clamp(6.0 * correlation, n / 100.0, n / 30.0)) + 1);
   }
-  std::optional<Term> best_beside(const std::vector<Term>& terms) const {
-    std::optional<Term> best;
+  std::optional<EncoderTerm> best_beside(const std::vector<EncoderTerm>& terms) const {
+    std::optional<EncoderTerm> best;
     double least = evidence_.fit(all(terms)).left;
     for (std::size_t k = 0; k < options_.size(); ++k) {
-      if (std::ranges::any_of(terms, [&](const Term& term) { return term.option == k; })) continue;
+      if (std::ranges::any_of(terms, [&](const EncoderTerm& term) { return term.option == k; })) continue;
       auto trial = terms;
       trial.insert(trial.begin(), {k, columns_[k]});
       const auto chosen = all(trial);
@@ -98,7 +99,7 @@ class Choice {
     return best;
   }
   // Whether the last of the `terms` helps in the blocks whose weights are the others', and not by one odd event.
-  bool foretells(const std::vector<Term>& without, const std::vector<Term>& terms) const {
+  bool foretells(const std::vector<EncoderTerm>& without, const std::vector<EncoderTerm>& terms) const {
     const auto before = evidence_.held_out(all(without)), after = evidence_.held_out(all(terms));
     double gained = 0.0, most = 0.0;
     for (std::size_t k = 0; k < before.size(); ++k) {
@@ -108,7 +109,7 @@ class Choice {
     return gained > 0.0 && most < 0.8 * gained;
   }
 
-  const std::vector<Option>& options_;
+  const std::vector<EncoderOption>& options_;
   const machine::AxisModel& axis_;
   Evidence evidence_;
   ColumnIndices nuisances_;
@@ -116,7 +117,7 @@ class Choice {
 };
 
 // The difference of the held-out records less `of_causes`, with their own nuisances taken off.
-Eigen::VectorXd left_over(const EncoderDifference& difference, const Eigen::VectorXd& of_causes) {
+Eigen::VectorXd left_of_difference(const EncoderDifference& difference, const Eigen::VectorXd& of_causes) {
   const Eigen::VectorXd target = difference.target() - of_causes;
   Eigen::MatrixXd nuisances(target.size(), static_cast<Eigen::Index>(difference.nuisances().size()));
   for (std::size_t k = 0; k < difference.nuisances().size(); ++k)
@@ -164,8 +165,8 @@ sim::Chart error_over_turn(const Eigen::VectorXd& before, const Eigen::VectorXd&
 EncoderCauses find_between_encoders(const EncoderDifference& training, const EncoderDifference& held_out,
                                     const machine::AxisModel& axis, const ShownUnits& units, std::uint64_t seed) {
   EncoderCauses found;
-  const auto options = options_of(axis);
-  const Choice choice(training, options, axis);
+  const auto options = encoder_options_of(axis);
+  const EncoderChoice choice(training, options, axis);
   const auto terms = choice.run();
   if (terms.empty()) return found;
   const auto chosen = choice.all(terms);
@@ -193,11 +194,11 @@ EncoderCauses find_between_encoders(const EncoderDifference& training, const Enc
   }
   const Eigen::VectorXd all_of_them = std::accumulate(in_held_out.begin(), in_held_out.end(),
                                                       Eigen::VectorXd(Eigen::VectorXd::Zero(held_out.rows().rows())));
-  const auto after = left_over(held_out, all_of_them);
+  const auto after = left_of_difference(held_out, all_of_them);
   const double total = evidence.fit(choice.all({})).left;
   for (std::size_t k = 0; k < terms.size(); ++k) {
     const auto& option = options[terms[k].option];
-    const auto before = left_over(held_out, all_of_them - in_held_out[k]);
+    const auto before = left_of_difference(held_out, all_of_them - in_held_out[k]);
     Finding finding(option.effect);
     finding.axis = axis.name;
     finding.residual = Residual::encoders;

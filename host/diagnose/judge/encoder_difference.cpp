@@ -19,7 +19,7 @@ bool on_both_sides(const machine::AxisModel& axis) {
 }
 
 // As an encoder that shows everything `delay` (s) earlier.
-std::vector<double> earlier(const std::vector<double>& values, double delay, double period) {
+std::vector<double> shown_earlier(const std::vector<double>& values, double delay, double period) {
   if (delay == 0.0 || values.size() < 2) return values;
   const double samples = delay / period, last = static_cast<double>(values.size() - 1);
   std::vector<double> moved(values.size());
@@ -31,13 +31,13 @@ std::vector<double> earlier(const std::vector<double>& values, double delay, dou
   return moved;
 }
 
-std::vector<double> rate_of(const std::vector<double>& values, double period) {
+std::vector<double> rate_over(const std::vector<double>& values, double period) {
   std::vector<double> rate(values.size(), 0.0);
   for (std::size_t k = 1; k + 1 < values.size(); ++k) rate[k] = (values[k + 1] - values[k - 1]) / (2.0 * period);
   return rate;
 }
 
-std::vector<double> sides(const std::vector<double>& values) {
+std::vector<double> sides_of(const std::vector<double>& values) {
   double greatest = 1e-300;
   for (const double value : values) greatest = std::max(greatest, std::abs(value));
   auto side = values;
@@ -46,7 +46,7 @@ std::vector<double> sides(const std::vector<double>& values) {
 }
 
 // The motor by itself, as an axis.
-machine::AxisModel motor_of(machine::AxisModel axis) {
+machine::AxisModel motor_alone(machine::AxisModel axis) {
   axis.mass = axis.motor_mass;
   axis.effects.clear();
   if (axis.motor_friction) axis.friction = *axis.motor_friction;
@@ -55,25 +55,25 @@ machine::AxisModel motor_of(machine::AxisModel axis) {
 
 std::vector<double> force_through_shaft(const machine::AxisModel& axis, const Motion& motor) {
   auto force = motor.force;
-  const auto alone = motor_of(axis);
+  const auto alone = motor_alone(axis);
   std::vector<double> friction(force.size(), 0.0);
   if (axis.motor_friction) friction = friction_along(alone, motor);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] -= axis.motor_mass * motor.a[i] + friction[i];
   const double lag = axis.transmission->damping.value_or(0.0) / *axis.transmission->stiffness;  // s
   if (lag == 0.0) return force;
-  const auto rate = rate_of(force, motor.period);
+  const auto rate = rate_over(force, motor.period);
   for (std::size_t i = 0; i < force.size(); ++i) force[i] -= lag * rate[i];
   return force;
 }
 
 // The load by itself.
-machine::AxisModel load_of(machine::AxisModel axis) {
+machine::AxisModel load_alone(machine::AxisModel axis) {
   axis.mass -= axis.motor_mass;
   axis.transmission->stiffness.reset();
   return axis;
 }
 
-double square(const std::vector<double>& values) {
+double mean_square_of(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double value : values) sum += value * value;
   return sum / static_cast<double>(values.size());
@@ -91,8 +91,8 @@ bool load_is_better(const machine::AxisModel& axis, const std::vector<double>& b
   const double band = settings.band > 0.0 ? settings.band : settings.cutoff;
   // Of white noise of the position, twice differentiated, up to the end of the band.
   const double acceleration = noise * std::pow(2.0 * std::numbers::pi * band, 2) * std::sqrt(0.4 * period * band);
-  const double force = square(by_load), of_load = (axis.mass - axis.motor_mass) * acceleration;
-  return of_load * of_load / force < resolution_of_dynamics * std::sqrt(square(motor.force) / force);
+  const double force = mean_square_of(by_load), of_load = (axis.mass - axis.motor_mass) * acceleration;
+  return of_load * of_load / force < resolution_of_dynamics * std::sqrt(mean_square_of(motor.force) / force);
 }
 
 // The rows of the shaft's own band: above its load's frequency a twist falls off with the square, and noise of
@@ -115,8 +115,8 @@ EncoderDifference::EncoderDifference(const std::vector<Log>& logs, const machine
   std::vector<std::vector<double>> ahead;
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, axis);
-    const auto first = earlier(channels.x, axis.encoder.delay, log.period);
-    const auto second = earlier(channels.x_load, axis.second_encoder->delay, log.period);
+    const auto first = shown_earlier(channels.x, axis.encoder.delay, log.period);
+    const auto second = shown_earlier(channels.x_load, axis.second_encoder->delay, log.period);
     const auto &motor = first_on_motor ? first : second, &load = first_on_motor ? second : first;
     auto of_motor = channels;
     of_motor.x = motor;
@@ -124,7 +124,7 @@ EncoderDifference::EncoderDifference(const std::vector<Log>& logs, const machine
     motions.push_back(motion_of(log, of_motor, axis, Amperes::amplitude, settings));
     auto of_load = of_motor;
     of_load.x = load;
-    auto by_load = force_along(load_of(axis), motion_of(log, of_load, axis, Amperes::amplitude, settings));
+    auto by_load = force_along(load_alone(axis), motion_of(log, of_load, axis, Amperes::amplitude, settings));
     const bool better = load_is_better(axis, by_load, motions.back(), log.period, settings);
     runs_.push_back(
         ShaftRun{axis, better ? std::move(by_load) : force_through_shaft(axis, motions.back()), motor, load});
@@ -143,7 +143,7 @@ Eigen::VectorXd EncoderDifference::stacked(const std::vector<std::vector<double>
 Eigen::VectorXd EncoderDifference::beyond_file(const machine::AxisModel& axis) const {
   std::vector<std::vector<double>> file;
   for (const auto& run : runs_) {
-    const auto side = sides(run.force);
+    const auto side = sides_of(run.force);
     file.emplace_back(run.force.size());
     for (std::size_t i = 0; i < side.size(); ++i)
       file.back()[i] = run.force[i] / *axis.transmission->stiffness + 0.5 * axis.transmission->backlash * side[i];
@@ -186,10 +186,10 @@ std::optional<EncoderDifference> EncoderDifference::of(const Record& record, con
   std::vector<std::vector<double>> direction, side, rate, of_motor;
   for (std::size_t k = 0; k < rows.logs().size(); ++k) {
     const auto& motion = rows.motions()[k];
-    direction.push_back(sides(motion.v));
-    side.push_back(sides(measured.runs_[k].force));
-    rate.push_back(rate_of(measured.runs_[k].force, motion.period));
-    of_motor.push_back(rate_of(motion.force, motion.period));
+    direction.push_back(sides_of(motion.v));
+    side.push_back(sides_of(measured.runs_[k].force));
+    rate.push_back(rate_over(measured.runs_[k].force, motion.period));
+    of_motor.push_back(rate_over(motion.force, motion.period));
   }
   measured.nuisances_.push_back(rows.velocity);
   for (const auto* each : {&direction, &side, &rate, &of_motor}) measured.nuisances_.push_back(measured.stacked(*each));
