@@ -141,7 +141,7 @@ DiagnosisReport synthetic_diagnosis() {
                         {"cosine", "N", true, {3.1, 0.21}, {0.08, 0.07}},
                         {"sine", "N", true, {0.4, -0.02}, {0.08, 0.07}}};
   cogging.explains = 0.63;
-  cogging.holdout = {0.41, 0.44, {}, {0.38, 0.45}};
+  cogging.holdout = {0.41, 0.44, {}, {}, {0.38, 0.45}};
   cogging.p_value = 1e-9;
   cogging.probability = 0.93;
   cogging.without_each_log = NamedIn{2, 3};
@@ -154,7 +154,7 @@ DiagnosisReport synthetic_diagnosis() {
   constant.values = {{"force", {-1.4}}};
   constant.parameters = {{"force", "N", false, {-1.4}, {}}};
   constant.explains = 0.08;
-  constant.holdout = {0.95, {}, {}, {0.93, 0.98}};
+  constant.holdout = {0.95, {}, {}, {}, {0.93, 0.98}};
   constant.p_value = 1e-14;
   constant.confused_with = {
       {effect("friction_asymmetry"), "the axis turned over, a different payload, or a reading at standstill"}};

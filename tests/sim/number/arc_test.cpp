@@ -23,7 +23,7 @@ TEST(ArcTangent, IsWithinTwoUnitsOfTheLastPlaceInEveryDirection) {
   double largest = 0.0;
   for (double x = 1e-12; x < 1e12; x *= 1.003)
     for (const double y : {1.0, 0.3141592653589793, 17.0})
-      for (const auto [a, b] : {std::pair{y, x}, {-y, x}, {y, -x}, {-y, -x}})
+      for (const auto& [a, b] : {std::pair{y, x}, {-y, x}, {y, -x}, {-y, -x}})
         largest = std::fmax(largest, units_off(arc_tangent(a, b), std::atan2(static_cast<long double>(a), b)));
   for (int k = 0; k <= 64; ++k) {
     const double q = k / 64.0;  // nodes of the table, and half of the way between them

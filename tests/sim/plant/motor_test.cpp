@@ -36,7 +36,7 @@ PhaseValues phases(double amplitude, double x) {
 
 TEST(Winding, TakesTheExactStepForAnyStep) {
   for (const double h : {1e-7, 15.625e-6, 1e-3, 0.5}) {
-    const Winding winding(1.8, 18e-3, h);
+    const Winding<double> winding(1.8, 18e-3, h);
     double i = 3.0;
     for (int n = 1; n <= 50; ++n) {
       i = winding.advance(i, 90.0);
