@@ -149,7 +149,7 @@ TEST(CommandResidual, names_the_gain_that_differs_with_its_value_and_leaves_the_
     figure(std::string("command residual, ") + c.key, std::to_string(value) + ", true " + std::to_string(c.value));
     EXPECT_EQ(finding->parameters.size(), 1u) << c.key;
     EXPECT_NEAR(value, c.value, 0.005 * c.value) << c.key;
-    EXPECT_EQ(finding->residual, Residual::command);
+    EXPECT_EQ(finding->residual, host::Residual::command);
     EXPECT_LT(*finding->holdout.command_rms_ratio, 0.9);
     EXPECT_LT(*verdict.extended.command_rms, *verdict.baseline.command_rms);
   }

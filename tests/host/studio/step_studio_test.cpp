@@ -16,7 +16,6 @@ namespace stiction::host {
 namespace {
 
 using sim::cam::CamError;
-using step::degree;
 
 constexpr const char* motion_file = "step.toml";
 
@@ -37,8 +36,9 @@ TEST(StepProjectText, ReadsBackAsTheSameProject) {
   project.load.torque = 0.1 + 0.2;  // no decimal number
   project.load.preload = 1e-5, project.load.stiffness = 1e8, project.load.largest_pressure = 1.2e9;
   project.relief.lead_in = 0.07, project.relief.peak.middle_arc = true;
-  project.relief.overrides = {{.cam = 1, .angle = 150.5 * degree, .depth = 3e-5, .blend = {}, .begin = 2.5, .end = 2.6},
-                              {.cam = 0, .angle = 1.0 / 3.0, .blend = 0.05}};
+  project.relief.overrides = {
+      {.cam = 1, .angle = 150.5 * step::degree, .depth = 3e-5, .blend = {}, .begin = 2.5, .end = 2.6},
+      {.cam = 0, .angle = 1.0 / 3.0, .blend = 0.05}};
   project.electronic = step::ElectronicCam{0.004, 0.0};
   const auto text = project_text(project);
   const auto again = step::parse_step_project("dial.toml", text, step_motion_text());
@@ -108,10 +108,10 @@ TEST(StepStudio, LowersAllArcsOfAKindOrOneAlone) {
   studio.set_relief({.arc = 0, .depth = 5e-5}, false);
   for (const auto& arc : arcs()) EXPECT_EQ(arc.shape.depth, arc.valley == arcs()[0].valley ? 5e-5 : 0.0);
   studio.set_relief({.arc = 1, .depth = 2e-5, .alone = true}, false);
-  studio.set_relief({.arc = 1, .blend = 3.0 * degree, .alone = true}, true);
+  studio.set_relief({.arc = 1, .blend = 3.0 * step::degree, .alone = true}, true);
   EXPECT_EQ(studio.step().project()->relief.overrides.size(), 1U);
   EXPECT_EQ(arcs()[1].shape.depth, 2e-5);
-  EXPECT_NEAR(arcs()[1].shape.blend, 3.0 * degree, 1e-15);
+  EXPECT_NEAR(arcs()[1].shape.blend, 3.0 * step::degree, 1e-15);
   const auto before = studio.step_text();
   EXPECT_THROW(studio.set_relief({.arc = 0, .depth = 0.05}, false), CamError);  // beyond the hub
   EXPECT_THROW(studio.set_relief({.arc = 9, .depth = 0.0}, false), CamError);
@@ -123,7 +123,7 @@ TEST(StepStudio, LowersAllArcsOfAKindOrOneAlone) {
 TEST(StepStudio, SaysWhatCannotBeBuiltAndComesBackByUndo) {
   Studio studio = with_step_cam();
   ASSERT_NE(studio.step().made(), nullptr);
-  studio.edit({.verb = "level", .at = 1, .y = 80 * degree});
+  studio.edit({.verb = "level", .at = 1, .y = 80 * step::degree});
   EXPECT_EQ(studio.step().made(), nullptr);
   EXPECT_NE(studio.step().problem().find("whole number"), std::string::npos);
   EXPECT_THROW(studio.step().profiles(), CamError);
@@ -187,12 +187,12 @@ TEST(StudioTracks, AreEditedAsAFileHasThem) {
 
 TEST(StudioLevel, OfACycleWithoutAdvanceMayAdvanceByTheModulo) {
   Studio studio;
-  studio.edit({.verb = "modulo", .x = 90 * degree});
+  studio.edit({.verb = "modulo", .x = 90 * step::degree});
   studio.edit({.verb = "law", .at = 0, .key = "modified_sine"});
-  EXPECT_THROW(studio.edit({.verb = "level", .at = 0, .y = 50 * degree}), CamError);
-  studio.edit({.verb = "level", .at = 0, .y = 90 * degree});
-  EXPECT_NEAR(studio.cam().segments[0].stroke, 90 * degree, 1e-12);
-  EXPECT_NEAR(*studio.cam().modulo, 90 * degree, 1e-12);
+  EXPECT_THROW(studio.edit({.verb = "level", .at = 0, .y = 50 * step::degree}), CamError);
+  studio.edit({.verb = "level", .at = 0, .y = 90 * step::degree});
+  EXPECT_NEAR(studio.cam().segments[0].stroke, 90 * step::degree, 1e-12);
+  EXPECT_NEAR(*studio.cam().modulo, 90 * step::degree, 1e-12);
 }
 
 }  // namespace
