@@ -253,6 +253,12 @@ TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
     Effect one{kind.name(), {}};
     for (const ValueKey& key : kind->keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
+    if (kind.name() == "shaft_stiffness") {
+      // The motors of this table move their axes directly.
+      EXPECT_THROW(sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {})),
+                   MachineFileError);
+      continue;
+    }
     const Machine machine = sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {}));
     for (const AxisModel& axis : machine.axes) EXPECT_EQ(axis.effects.at(0).values, one.values) << kind.name();
   }
