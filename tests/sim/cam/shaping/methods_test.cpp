@@ -204,6 +204,11 @@ TEST(Shaping, EveryMethodsMotionFileRisesAsTheOldOneWithoutAJumpOfTheSpeed) {
     const auto task = task_of_law("sloping_sine", rise);
     for (const auto& method : shaping_methods()) {
       const auto made = shaped(task, method);
+      // In two periods of the load the wave is not back.
+      if (method.name == "wave-based" && task.periods() < 3.0) {
+        EXPECT_FALSE(made);
+        continue;
+      }
       ASSERT_TRUE(made) << method.name << rise;
       EXPECT_EQ(problem_of(made->cam), "") << method.name;
       EXPECT_NEAR(made->cam.cycle(), 2.0 * std::numbers::pi, 1e-9);
