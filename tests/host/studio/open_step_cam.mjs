@@ -81,7 +81,7 @@ async function designByKeyboard(browser) {
 
 // All but the page, which the command alone writes.
 function compareFolder(made, shop) {
-  const names = readdirSync(shop).filter(name => name !== 'report.html').sort();
+  const names = readdirSync(shop).filter(name => name !== 'report.html' && !name.startsWith('.')).sort();
   expect(names.join() === [...made.keys()].sort().join(), `the page exports ${[...made.keys()].join(', ')}, the command ${names.join(', ')}`);
   for (const name of names) expect(made.get(name)?.equals(readFileSync(`${shop}/${name}`)), `the page's ${name} is not the command's`);
 }

@@ -34,7 +34,7 @@ function pageFiles() {
 function compare(name, file) {
   const shop = `${folder}/${name}`;
   execFileSync(stiction, ['cam', 'step', file, '--out', shop], { stdio: 'pipe' });
-  const made = pageFiles(), names = readdirSync(shop).filter(each => each !== 'report.html').sort();
+  const made = pageFiles(), names = readdirSync(shop).filter(each => each !== 'report.html' && !each.startsWith('.')).sort();
   expect(names.join() === [...made.keys()].sort().join(), `${name}: the page has ${[...made.keys()].join(', ')}, the command ${names.join(', ')}`);
   let same = 0, bytes = 0;
   for (const each of names) {
