@@ -292,7 +292,8 @@ class Axis {
                                              const typename VelocityEstimator<S>::Estimate& velocity,
                                              typename S::Position x, Each<S, std::int64_t> t_ns,
                                              std::int64_t now_ns) requires(!OneAxis<S>) {
-    state_.missed_positions = select(fresh, Each<S, std::uint8_t>{}, state_.missed_positions + 1);
+    state_.missed_positions =
+        select(fresh, Each<S, std::uint8_t>{}, static_cast<Each<S, std::uint8_t>>(state_.missed_positions + 1));
     trip_where(state_.missed_positions > missed_positions_allowed, Fault::position_lost, now_ns);
     assign(fresh, state_.velocity.velocity, velocity.velocity);
     assign(fresh, state_.velocity.time_ns, velocity.time_ns);
