@@ -9,6 +9,7 @@
 #include "host/diagnose/classes/command_parameter.hpp"
 #include "host/diagnose/judge/holdout.hpp"
 #include "host/diagnose/record/command_replay.hpp"
+#include "host/diagnose/record/moved_values.hpp"
 #include "host/diagnose/statistics/evidence.hpp"
 #include "host/diagnose/statistics/fisher.hpp"
 #include "host/diagnose/statistics/level.hpp"
@@ -48,8 +49,8 @@ class Commands {
     for (const auto& log : records.logs) {
       const auto& channels = channels_of(log, axis);
       auto values = channels.*(recorded_command(channels, axis)->values);
-      logged.push_back(earlier(values, record_delay / log.period));
-      if (record_delay != 0.0) rates.push_back(rate_of(logged.back(), log.period));
+      logged.push_back(shown_earlier(values, record_delay / log.period));
+      if (record_delay != 0.0) rates.push_back(rate_over(logged.back(), log.period));
     }
     logged_ = rows_of(logged);
     if (!rates.empty()) nuisances_.push_back(rows_of(rates));
@@ -84,21 +85,6 @@ class Commands {
   }
 
  private:
-  static std::vector<double> earlier(const std::vector<double>& values, double samples) {
-    if (samples == 0.0) return values;
-    std::vector<double> moved(values.size());
-    for (std::size_t k = 0; k < values.size(); ++k) {
-      const double place = std::clamp(static_cast<double>(k) + samples, 0.0, static_cast<double>(values.size() - 1));
-      const auto before = std::min(static_cast<std::size_t>(place), values.size() - 2);
-      moved[k] = values[before] + (values[before + 1] - values[before]) * (place - static_cast<double>(before));
-    }
-    return moved;
-  }
-  static std::vector<double> rate_of(const std::vector<double>& values, double period) {
-    std::vector<double> rate(values.size(), 0.0);
-    for (std::size_t k = 1; k + 1 < values.size(); ++k) rate[k] = (values[k + 1] - values[k - 1]) / (2.0 * period);
-    return rate;
-  }
   Eigen::VectorXd rows_of(const std::vector<std::vector<double>>& columns) const {
     const auto& rows = records_.rows;
     Eigen::VectorXd all = rows.stacked(

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/record/moved_values.hpp"
 #include "host/identify/identification.hpp"
 
 namespace stiction::host {
@@ -16,25 +17,6 @@ constexpr double no_side = 0.02;
 
 bool on_both_sides(const machine::AxisModel& axis) {
   return axis.elastic() && axis.second_encoder && axis.second_encoder->on != axis.encoder.on;
-}
-
-// As an encoder that shows everything `delay` (s) earlier.
-std::vector<double> shown_earlier(const std::vector<double>& values, double delay, double period) {
-  if (delay == 0.0 || values.size() < 2) return values;
-  const double samples = delay / period, last = static_cast<double>(values.size() - 1);
-  std::vector<double> moved(values.size());
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    const double place = std::clamp(static_cast<double>(k) + samples, 0.0, last);
-    const auto before = std::min(static_cast<std::size_t>(place), values.size() - 2);
-    moved[k] = values[before] + (values[before + 1] - values[before]) * (place - static_cast<double>(before));
-  }
-  return moved;
-}
-
-std::vector<double> rate_over(const std::vector<double>& values, double period) {
-  std::vector<double> rate(values.size(), 0.0);
-  for (std::size_t k = 1; k + 1 < values.size(); ++k) rate[k] = (values[k + 1] - values[k - 1]) / (2.0 * period);
-  return rate;
 }
 
 std::vector<double> sides_of(const std::vector<double>& values) {
@@ -115,8 +97,8 @@ EncoderDifference::EncoderDifference(const std::vector<Log>& logs, const machine
   std::vector<std::vector<double>> ahead;
   for (const auto& log : logs) {
     const auto& channels = channels_of(log, axis);
-    const auto first = shown_earlier(channels.x, axis.encoder.delay, log.period);
-    const auto second = shown_earlier(channels.x_load, axis.second_encoder->delay, log.period);
+    const auto first = shown_earlier(channels.x, axis.encoder.delay / log.period);
+    const auto second = shown_earlier(channels.x_load, axis.second_encoder->delay / log.period);
     const auto &motor = first_on_motor ? first : second, &load = first_on_motor ? second : first;
     auto of_motor = channels;
     of_motor.x = motor;
