@@ -178,5 +178,15 @@ TEST(FrictionCompensation, ObservesTheErrorWhereItLearns) {
   }
 }
 
+// The tables of the last start are played from the first tick, and are what is kept for the next one.
+TEST(FrictionCompensation, GivesBackTheTablesItStartedWithUntilTheErrorTeaches) {
+  auto c = config(CompensationKind::learning, 10);
+  c.learning.tables[1].front() = signal<S::Current>(0.25);
+  FrictionCompensation<S> stage(c);
+  stage.start({});
+  EXPECT_EQ(stage.learned()[1].front(), c.learning.tables[1].front());
+  EXPECT_EQ(to_si(stage.learned()[0].front()), 0.0);
+}
+
 }  // namespace
 }  // namespace stiction
