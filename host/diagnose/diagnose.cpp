@@ -12,6 +12,7 @@
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/master_charts.hpp"
+#include "host/diagnose/judge/changed_between.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
@@ -137,6 +138,30 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
   add_cause_charts(verdict, rows, prepared.context, shown, explained.found.residual);
 }
 
+// The held-out residual force (N) as it were in the state of the machine in which the training records were made; what
+// has changed goes to the verdict. Parts of the same logs are of the same state.
+Eigen::VectorXd in_same_state(Verdict& verdict, const Prepared& prepared, const SearchResult& found) {
+  const auto &training = prepared.training, &held_out = prepared.held_out;
+  Eigen::VectorXd target = held_out.target;
+  if (verdict.holdout_is_a_part) return target;
+  const Eigen::VectorXd rest = without_terms(held_out.regressors, target, prepared.context, found.terms);
+  for (const auto& change : changes_between({training.regressors, found.residual}, {held_out.regressors, rest},
+                                            prepared.context, found.terms)) {
+    target -= change.force;
+    const auto changed = changed_parameter(prepared.context, change);
+    verdict.notes.push_back(
+        fmt::format("The held-out records are of another state of the machine. {}: {} = {:.4g} {} in them, {:.4g} {} "
+                    "in the training "
+                    "records; the difference has a standard error of {:.2g} {}. Causes were judged on the held-out "
+                    "force without this "
+                    "difference; the positions of the closed loop have it.",
+                    changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.unit,
+                    changed.standard_error, changed.unit));
+    verdict.changed.push_back(changed);
+  }
+  return target;
+}
+
 // What the drive commanded, less what the file's controller gives.
 // `of_file`: the records with the file's own runs; `searched`: those in whose force the causes were looked for.
 void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& of_file, const Prepared& searched,
@@ -206,7 +231,8 @@ Verdict diagnose(const DiagnoseInput& input) {
   auto found = search(records, verdict);
   verdict.exact_records = found.exact_records;
   begin(2);
-  const HeldOutData unseen{held_out.regressors, held_out.target, records.context, input.seed};
+  const Eigen::VectorXd comparable = in_same_state(verdict, records, found);
+  const HeldOutData unseen{held_out.regressors, comparable, records.context, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
   give_figures(verdict, records, explained, unseen);
   begin(4);

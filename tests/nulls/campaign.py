@@ -108,7 +108,8 @@ class Campaign:
         out = self.run(folder, "diagnose", *logs, "--machine", machine.name, *using, "--axis", axis, "--json")
         verdict = json.loads(out)
         return {"records": [log for log in logs if log != "--holdout"], "names": walk.names_in(verdict),
-                "status": verdict.get("status"), "said": walk.said_of(verdict)}
+                "status": verdict.get("status"), "said": walk.said_of(verdict),
+                "changed": [each["parameter"] for each in verdict.get("changed", [])]}
 
     def run(self, folder, *command):
         outcome = self.program.run(*command, folder=folder)
@@ -127,16 +128,19 @@ WANTED = 0.015  # of records
 CHANCE = 0.001  # that a sample of an engine with this rate is called bad
 
 
-def rate_of(name, cases):
+def rate_of(name, cases, what="names"):
     rate = tally.Rate(name)
     for case in cases:
-        rate.add(case["names"])
+        rate.add(case[what])
     return rate.text()
 
 
 def report(cases):
     judged = [case for case in cases if "error" not in case]
-    lines = [rate_of(f"exact file: a cause is named (wanted at most {100.0 * WANTED:g} %)", judged), ""]
+    lines = [rate_of(f"exact file: a cause is named (wanted at most {100.0 * WANTED:g} %)", judged),
+             # Cases of an engine that did not say it have none.
+             rate_of("exact file: held-out records are called those of another state",
+                     [case for case in judged if "changed" in case], "changed"), ""]
     for what in ("machine", "model", "period_ms", "set_points", "status"):
         for value in sorted({str(case[what]) for case in judged}):
             lines.append("  " + rate_of(f"{what} {value}", [case for case in judged if str(case[what]) == value]))

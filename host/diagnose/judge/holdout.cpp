@@ -97,6 +97,20 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const SearchContext& context,
   return force;
 }
 
+// The terms' forces, which `rest` loses.
+std::vector<Eigen::VectorXd> take_terms(const LogRows& rows, const SearchContext& context, std::span<const Term> terms,
+                                        Eigen::VectorXd& rest) {
+  // Phases of ripples are found with all other terms in place.
+  std::vector<Eigen::VectorXd> forces(terms.size());
+  for (const bool periodic : {false, true})
+    for (std::size_t k = 0; k < terms.size(); ++k) {
+      if (candidates()[terms[k].candidate].periodic != periodic) continue;
+      forces[k] = force_of_term(rows, context, terms[k], rest);
+      rest -= forces[k];
+    }
+  return forces;
+}
+
 std::vector<RowBlock> blocks_of_rows(const LogRows& rows) {
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
 }
@@ -126,17 +140,17 @@ std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::
   return {interval.low, interval.high};
 }
 
+Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
+                              std::span<const Term> terms) {
+  Eigen::VectorXd rest = target;
+  take_terms(rows, context, terms, rest);
+  return rest;
+}
+
 HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                                  std::span<const Term> terms, std::uint64_t seed) {
-  // Phases of ripples are found with all other terms in place.
-  std::vector<Eigen::VectorXd> forces(terms.size());
   Eigen::VectorXd rest = target;
-  for (const bool periodic : {false, true})
-    for (std::size_t k = 0; k < terms.size(); ++k) {
-      if (candidates()[terms[k].candidate].periodic != periodic) continue;
-      forces[k] = force_of_term(rows, context, terms[k], rest);
-      rest -= forces[k];
-    }
+  const auto forces = take_terms(rows, context, terms, rest);
   bool constant = true, coulomb = true;
   for (const auto& term : terms) {
     constant = constant && !candidates()[term.candidate].names_constant;

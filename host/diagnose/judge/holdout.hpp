@@ -20,6 +20,11 @@ struct HeldOutFigures {
   HeldOutAmplitude together;
 };
 
+// The `target` (N, residual force of the held-out `rows`) less what the `terms` of a search make there, a ripple's
+// phase as it fits each record best. `context`: of the search.
+Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
+                              std::span<const Term> terms);
+
 // `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`. `context`: of
 // the search; `terms`: what it found.
 HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,

@@ -122,6 +122,15 @@ struct Rejected {
   std::string why;
 };
 
+// A parameter of the axis that is not the same in the training and in the held-out records: another workpiece, another
+// day. In SI, of the axis itself.
+struct ChangedParameter {
+  sim::EffectId effect;  // by which the machine file would have it
+  std::string key, unit;
+  double training = 0.0, held_out = 0.0;
+  double standard_error = 0.0;  // of their difference
+};
+
 // What is left over, by what it looks like.
 struct Unexplained {
   double share = 0.0;                    // of the baseline's residual variance that is neither explained nor noise
@@ -223,6 +232,7 @@ struct Verdict {
   std::optional<double> small_below;
   std::size_t exact_records = 0;  // of the machine as its file says, in which the names were looked for too
   std::vector<Rejected> rejected;
+  std::vector<ChangedParameter> changed;  // between training and held-out records; the force is judged without it
   Unexplained unexplained;
   std::vector<std::string> questions;      // on amperes, lengths, signs and shifts of the logs: to be answered first
   std::vector<StartValue> identified;      // empty: the file was diagnosed as it is

@@ -128,6 +128,12 @@ void add_agreement(Json& out, const Verdict& verdict) {
   if (verdict.noise_floor)
     out[named("noise_floor", verdict.units.force)] = verdict.units.force(verdict.noise_floor->force());
   if (verdict.exact_records > 0) out["exact_records"] = verdict.exact_records;
+  for (const auto& each : verdict.changed)
+    out["changed"].push_back({{"effect", each.effect.name()},
+                              {"parameter", each.key + sim::unit_suffix(each.unit)},
+                              {"training", each.training},
+                              {"held_out", each.held_out},
+                              {"standard_error", each.standard_error}});
   if (!verdict.closed_loop_withheld.empty()) out["closed_loop_withheld"] = verdict.closed_loop_withheld;
   if (!verdict.questions.empty()) out["questions"] = verdict.questions;
   if (verdict.identified.empty()) return;
