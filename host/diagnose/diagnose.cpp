@@ -149,14 +149,14 @@ Eigen::VectorXd in_same_state(Verdict& verdict, const Prepared& prepared, const 
                                             prepared.context, found.terms)) {
     target -= change.force;
     const auto changed = changed_parameter(prepared.context, change);
-    verdict.notes.push_back(
-        fmt::format("The held-out records are of another state of the machine. {}: {} = {:.4g} {} in them, {:.4g} {} "
-                    "in the training "
-                    "records; the difference has a standard error of {:.2g} {}. Causes were judged on the held-out "
-                    "force without this "
-                    "difference; the positions of the closed loop have it.",
-                    changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.unit,
-                    changed.standard_error, changed.unit));
+    verdict.notes.push_back(fmt::format(
+        "The held-out records are of a different state of the machine. {}: {} = {:.4g} {} in them, {:.4g} {} "
+        "in the training "
+        "records; the difference has a standard error of {:.2g} {}. Causes were confirmed on the held-out "
+        "force without this "
+        "difference; the positions of the closed loop have it.",
+        changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.unit,
+        changed.standard_error, changed.unit));
     verdict.changed.push_back(changed);
   }
   return target;

@@ -18,7 +18,7 @@ namespace {
 
 // Normal quantile of 1 % for four parameters together, either sign: 1 - 0.01 / 8.
 constexpr double significant = 3.02;
-// Of the held-out force, rms: what moves it by less changes no judgement (diagnosis.md's practical relevance).
+// Of the held-out force, rms: what moves it by less changes no judgement.
 constexpr double relevant = 0.01;
 
 // What a day or a workpiece changes, of what this axis has.

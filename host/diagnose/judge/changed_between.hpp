@@ -28,7 +28,8 @@ struct StateChange {
 
 // What differs by more than chance and than the training records differ among themselves, at a level of 1 % for all
 // parameters together, and moves the held-out force by 1 % rms or more. Blocks of rows are one piece of evidence each.
-// `context` of the search; `terms`: what it found, already taken off what is left.
+// `training`, `held_out`: either set's rows; `context` of the search; `terms`: what it found, already taken off what is
+// left.
 std::vector<StateChange> changes_between(const StateRows& training, const StateRows& held_out,
                                          const SearchContext& context, std::span<const Term> terms);
 
