@@ -138,6 +138,16 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
   add_cause_charts(verdict, rows, prepared.context, shown, explained.found.residual);
 }
 
+std::string said_of(const ChangedParameter& changed) {
+  return fmt::format(
+      "The held-out records are of a different state of the machine. {0}: {1} = {2:.4g} {3} in them, {4:.4g} {3} in "
+      "the "
+      "training records; the difference has a standard error of {5:.2g} {3}. Causes were confirmed on the held-out "
+      "force "
+      "without this difference; the positions of the closed loop have it.",
+      changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.standard_error);
+}
+
 // The held-out residual force (N) as it were in the state of the machine in which the training records were made; what
 // has changed goes to the verdict. Parts of the same logs are of the same state.
 Eigen::VectorXd in_same_state(Verdict& verdict, const Prepared& prepared, const SearchResult& found) {
@@ -149,14 +159,7 @@ Eigen::VectorXd in_same_state(Verdict& verdict, const Prepared& prepared, const 
                                             prepared.context, found.terms)) {
     target -= change.force;
     const auto changed = changed_parameter(prepared.context, change);
-    verdict.notes.push_back(fmt::format(
-        "The held-out records are of a different state of the machine. {}: {} = {:.4g} {} in them, {:.4g} {} "
-        "in the training "
-        "records; the difference has a standard error of {:.2g} {}. Causes were confirmed on the held-out "
-        "force without this "
-        "difference; the positions of the closed loop have it.",
-        changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.unit,
-        changed.standard_error, changed.unit));
+    verdict.notes.push_back(said_of(changed));
     verdict.changed.push_back(changed);
   }
   return target;
