@@ -136,6 +136,9 @@ std::string force_text(const Effort& effort, const Hypothesis& h, double ratio, 
 void ask_force(const AxisLog& axis, const KnownAxis& known, const Effort& effort, const RigidMotion& motion,
                std::vector<Question>& questions) {
   if (std::abs(motion.mass) < determined * motion.mass_error || motion.mass_error <= 0.0) return;
+  // A channel of the wrong sign makes both negative. Friction that takes power beside a negative mass is a contact that
+  // yields: in small oscillations a spring is a negative mass.
+  if (motion.mass < 0.0 && motion.friction_power > determined * motion.friction_power_error) return;
   if (known.mass && effort.constant != 0.0) {
     const double per = effort.constant / *known.mass, ratio = motion.mass * per;
     const double error = std::hypot(motion.mass_error, alike * motion.mass_by_rest) * per;

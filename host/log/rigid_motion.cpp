@@ -246,12 +246,11 @@ class Fit {
     }
     return delay_at(static_cast<double>(at) + vertex);
   }
-  // Power of the friction columns by that of all columns in magnitude.
+  // Power of the effort less that of mass and offset, by the effort's and the speed's magnitudes.
   static double friction_part(const Sums& sums, std::size_t delay) {
     const auto solution = solved(sums, delay);
-    const double friction =
-        solution[1] * sums.normal(1, 1) + solution[2] * sums.normal(1, 2) + solution[3] * sums.normal(1, 3);
-    return friction / std::max(1e-300, std::sqrt(sums.square[delay] * sums.normal(1, 1)));
+    const double power = sums.right[delay][1] - solution[0] * sums.normal(1, 0) - solution[4] * sums.normal(1, 4);
+    return power / std::max(1e-300, std::sqrt(sums.square[delay] * sums.normal(1, 1)));
   }
 
   const Log& log_;

@@ -20,7 +20,8 @@ struct RigidMotion {
   double mass = 0.0, mass_error = 0.0;    // effort per acceleration, at the delay 0 or `at`
   double delay = 0.0, delay_error = 0.0;  // s: the effort is recorded late by so much against the position
   double rest_ratio = 1.0;                // unexplained variance without a delay over that with the best one
-  double friction_power = 0.0;            // of the effort's power, what friction takes; negative: it drives
+  // What friction takes, by the effort's and the speed's magnitudes; negative: it drives.
+  double friction_power = 0.0;
   double friction_power_error = 0.0;
   double mass_by_rest = 0.0;  // error of the mass if all that is unexplained went with the acceleration
   double explained = 0.0;     // of the variance of the effort by all columns

@@ -50,7 +50,12 @@ host::Verdict verdict_of(const std::vector<machine::Effect>& hidden, std::uint64
   return host::diagnose(input);
 }
 
-TEST(Commissioning, names_nothing_where_nothing_is_hidden) { EXPECT_TRUE(verdict_of({}, 1).findings.empty()); }
+TEST(Commissioning, names_and_asks_nothing_where_nothing_is_hidden) {
+  const auto verdict = verdict_of({}, 1);
+  EXPECT_TRUE(verdict.findings.empty());
+  for (const auto& question : verdict.questions) ADD_FAILURE() << question;
+  EXPECT_TRUE(verdict.changed.empty());
+}
 
 // Of what the analysis itself makes of a record the file's own run knows, also where it has to find its set-points, and
 // rows do not come faster than a slow record can fill them.
