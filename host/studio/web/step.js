@@ -261,8 +261,10 @@ function endReliefDrag() {
 
 // ---- the project's numbers ----
 
+const shownUnit = unit => ({ deg: '°', rpm: '/min', 'kg m^2': 'kg m²', um: 'µm', 'N/um': 'N/µm' })[unit] ?? unit;
+
 function stepField(number) {
-  const unit = { deg: '°', rpm: '/min', 'kg m^2': 'kg m²', um: 'µm', 'N/um': 'N/µm' }[number.unit] ?? number.unit;
+  const unit = shownUnit(number.unit);
   return field(number.text, number.value, unit, value => {
     attempt(() => engine.call('step_number', { text: number.name, x: value ?? 0, flag: value === null ? 0 : 1 }));
     refreshStep();

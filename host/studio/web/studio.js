@@ -518,20 +518,6 @@ function saveExport() {
   attempt(() => offer(format === 'table' ? `${name}.scam` : `${name}.${format}.txt`, 'application/octet-stream', engine.call('exported', { text: format }).bytes));
 }
 
-function reportText() {
-  const u = shownUnits(), machine = machineName?.replace(/[.]toml$/, ''), lines = [`# Cam ${state.name}`, '', `Written by stiction ${DATA.version}. Motion: ${motionName}. Speed of the master: ${speedText()}.`, '', '## Segments', '',
-    '| segment | law | ends at | position | stroke |', '| --- | --- | --- | --- | --- |'];
-  state.segments.forEach((segment, k) => lines.push(`| ${k + 1} | ${segment.law} | ${withUnit(endOf(k) * u.master, u.masterUnit)} | ${withUnit(positionOf(k) * u.slave, u.slaveUnit)} | ${withUnit(segment.stroke * u.slave, u.slaveUnit)} |`));
-  lines.push('', '## Rules', '', `\`stiction cam check ${motionName}${machine ? ` --machine ${machine}` : ''} --speed "${speedText()}"\``, '', ...[...at('rules').children].map(row => `- ${row.classList.contains('broken') ? 'broken: ' : ''}${row.lastChild.textContent}`));
-  if (shownRun) lines.push('', '## Machine', '', `\`${repeatingCommand()}\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...figureRows(shownRun.run).map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));
-  refreshStep();
-  if (stepCam?.made) {
-    drawStepFigures();
-    lines.push('', '## Step cam', '', `\`stiction cam step ${stepCam.name}.toml --out shop\``, '', '| figure | value | unit |', '| --- | --- | --- |', ...stepCam.figures.map(row => `| ${row.text} | ${row.value} | ${row.unit} |`));
-  }
-  return lines.join('\n') + '\n';
-}
-
 // A motion file, a machine file or a project of a step cam, told by its schema; anything else is refused by the reader of
 // motion files.
 const kindOf = text => (/^\s*schema\s*=\s*"stiction[.](machine|step-cam)\//m.exec(text) || [])[1] || 'motion';
@@ -562,7 +548,7 @@ function listen() {
   at('file').addEventListener('change', () => { openFiles(at('file').files).finally(() => { at('file').value = ''; }); });
   at('save').addEventListener('click', save);
   at('points').addEventListener('click', saveCurves);
-  at('report').addEventListener('click', () => offer(`${state.name}-report.md`, 'text/markdown', reportText()));
+  at('report').addEventListener('click', () => offer(`${state.name}-report.html`, 'text/html', reportPage()));
   at('sweep').addEventListener('click', sweep);
   at('export').addEventListener('click', saveExport);
   at('speed').addEventListener('change', () => {

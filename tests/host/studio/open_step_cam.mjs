@@ -5,6 +5,7 @@
 // usage: node open_step_cam.mjs STEP.html EMPTY.html STICTION PROJECT FOLDER [--screenshots FOLDER]
 import { execFileSync } from 'node:child_process';
 import { mkdirSync, readFileSync, readdirSync, rmSync, writeFileSync } from 'node:fs';
+import { pathToFileURL } from 'node:url';
 
 import { cutOff, poorContrasts } from '../report/page_checks.mjs';
 import { becomes, checkNames, expect, keyboardOf, launch, open, problems, saved } from './studio_page.mjs';
@@ -87,6 +88,7 @@ function compareFolder(made, shop) {
 }
 
 async function checkTurning(page) {
+  await page.locator('#mechanism').waitFor({ state: 'visible' });
   const angle = () => page.evaluate(() => angle), box = await page.locator('#mechanism').boundingBox();
   await page.mouse.move(box.x + 0.5 * box.width, box.y + 0.5 * box.height);
   await page.mouse.wheel(0, 100);
@@ -117,6 +119,9 @@ async function checkRelief(page) {
   const before = await projectText(page), old = await relief(page), knob = await page.locator('#relief-0 [data-arc="0"] .knob').boundingBox();
   const drag = async (scope, lift) => {
     await page.locator('#relief-scope').selectOption(scope);
+    // An undo is drawn a moment later: the handle is where it was until then.
+    const shown = () => page.locator('#relief-0 [data-arc="0"]').getAttribute('aria-valuenow');
+    expect(await becomes(page, depth => Number(document.querySelector('#relief-0 [data-arc="0"]').getAttribute('aria-valuenow')) === depth, 1e3 * old[0].depth), `the handle is at ${await shown()} mm; expected ${1e3 * old[0].depth}`);
     const at = await page.locator('#relief-0 [data-arc="0"] .knob').boundingBox(), x = at.x + at.width / 2, y = at.y + at.height / 2;
     await page.mouse.move(x, y);
     await page.mouse.down();
@@ -176,6 +181,8 @@ async function checkTracksAndCams(page) {
   const two = text + second.slice(second.indexOf('[cam.second]'));
   await page.locator('#file').setInputFiles({ name: 'two.toml', mimeType: 'text/plain', buffer: Buffer.from(two) });
   expect(await becomes(page, () => state.cams.length === 2), 'a file of two cams does not open');
+  // The list of cams appears with the file, some frames later on a busy computer.
+  await page.locator('#cam').waitFor({ state: 'visible' });
   await page.locator('#cam').selectOption({ label: 'second' });
   expect(await page.evaluate(() => state.name) === 'second', 'the second cam is not edited');
   await page.locator('#add-track').click();
@@ -200,6 +207,24 @@ async function checkFiles(page) {
   await refused('spring.toml', given.slice(0, given.indexOf('[relief]')).replace(/^(preload|stiffness).*$/mg, '') + '[spring]\nrate = "1 N m/rad"\npreload = "1 N m"\n', 'single cam with a spring');
   const report = await saved(page, () => page.locator('#report').click());
   expect(/stiction cam step step_cam[.]toml --out shop/.test(report.bytes.toString()) && /largest Hertz pressure/.test(report.bytes.toString()), 'the report lacks the step cam');
+  // Five curves of the motion, the mechanism, four charts of a turn and two of relief.
+  await checkReport(page, report, 12);
+}
+
+// Opens a saved report by itself, as whoever gets it does.
+async function checkReport(page, report, pictures) {
+  const opened = await page.context().browser().newPage({ viewport: { width: 1280, height: 900 } }), found = [], place = `${folder}/${report.name}`;
+  opened.on('console', message => found.push(message.text()));
+  opened.on('request', request => { if (!request.url().startsWith('file:')) found.push(`a request of ${request.url()}`); });
+  mkdirSync(folder, { recursive: true });
+  writeFileSync(place, report.bytes);
+  await opened.goto(pathToFileURL(place).href);
+  expect(await opened.locator('figure svg').count() === pictures, `the report has ${await opened.locator('figure svg').count()} pictures; expected ${pictures}`);
+  expect(await opened.locator('figure svg:not([role="img"])').count() === 0, 'a picture of the report has no name for a screen reader');
+  expect(await opened.locator('[tabindex], script').count() === 0, 'the report has something to be moved');
+  for (const problem of [...found, ...await opened.evaluate(poorContrasts), ...await opened.evaluate(cutOff, true)]) expect(false, `report: ${problem}`);
+  if (screenshots) await opened.screenshot({ path: `${screenshots}/step-report.png`, fullPage: true });
+  await opened.close();
 }
 
 async function checkLooks(page) {
