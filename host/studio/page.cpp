@@ -84,7 +84,8 @@ std::string studio_page(const StudioPageContent& content) {
                   {"speed", content.master_speed},
                   {"speed_text", content.speed_text}};
   const auto programme = wasm();
-  const std::string scripts = fmt::format("{}\n{}\n{}\n{}\n{}", engine_js(), charts_js(), report_js(), studio_js(), step_js());
+  const std::string scripts =
+      fmt::format("{}\n{}\n{}\n{}\n{}", engine_js(), charts_js(), report_js(), studio_js(), step_js());
   return fill_template(
       html(), {{"version", escape_html(content.version)},
                {"title", escape_html("Cam studio: " + studio.cam().name)},
