@@ -83,6 +83,7 @@ struct Candidate {
   bool at_weight = false;       // the scanned value is where the law is linearised: at best the weight itself
   bool names_constant = false;  // what it names is not a nuisance of its own evaluation
   bool names_coulomb = false;
+  bool of_state = false;      // a workpiece or a day changes it (changed_between.hpp)
   bool along_stroke = false;  // known between the places that the records reach, and nowhere else
   bool periodic = false;      // pairs cosine, sine by harmonics: the phase moves with the home position
   // Whether each record has weights of its own, the first record's before the second's: the phase moves from record to

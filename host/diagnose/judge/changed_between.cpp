@@ -8,10 +8,6 @@
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/statistics/whitening.hpp"
 #include "host/identify/regression.hpp"
-#include "sim/effects/constant_force/constant_force.hpp"
-#include "sim/effects/coulomb_mismatch/coulomb_mismatch.hpp"
-#include "sim/effects/mass_mismatch/mass_mismatch.hpp"
-#include "sim/effects/viscous_mismatch/viscous_mismatch.hpp"
 
 namespace stiction::host {
 namespace {
@@ -24,10 +20,8 @@ constexpr double relevant = 0.01;
 // What a day or a workpiece changes, of what this axis has.
 std::vector<std::size_t> state_candidates(const SearchContext& context) {
   std::vector<std::size_t> all;
-  for (const auto effect : {sim::id_of<sim::MassMismatch>(), sim::id_of<sim::ConstantForce>(),
-                            sim::id_of<sim::CoulombMismatch>(), sim::id_of<sim::ViscousMismatch>()})
-    if (const auto index = candidate_index(effect); index && !candidates()[*index].grid(context).empty())
-      all.push_back(*index);
+  for (std::size_t k = 0; k < candidates().size(); ++k)
+    if (candidates()[k].of_state && !candidates()[k].grid(context).empty()) all.push_back(k);
   return all;
 }
 

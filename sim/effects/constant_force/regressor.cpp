@@ -16,7 +16,11 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 
 }  // namespace
 
-extern const EffectRegressor regressor{
-    .force = {.grid = no_scan, .columns = columns, .possible = any, .describe = describe, .names_constant = true}};
+extern const EffectRegressor regressor{.force = {.grid = no_scan,
+                                                 .columns = columns,
+                                                 .possible = any,
+                                                 .describe = describe,
+                                                 .names_constant = true,
+                                                 .of_state = true}};
 
 }  // namespace stiction::host::effects::constant_force

@@ -37,6 +37,7 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .possible = possible,
                                                  .describe = describe,
                                                  .names_coulomb = true,
+                                                 .of_state = true,
                                                  .trials = 2.0}};
 
 }  // namespace stiction::host::effects::coulomb_mismatch

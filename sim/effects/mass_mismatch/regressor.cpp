@@ -16,6 +16,6 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
 }  // namespace
 
 extern const EffectRegressor regressor{
-    .force = {.grid = no_scan, .columns = columns, .possible = possible, .describe = describe}};
+    .force = {.grid = no_scan, .columns = columns, .possible = possible, .describe = describe, .of_state = true}};
 
 }  // namespace stiction::host::effects::mass_mismatch
