@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/host/cli/program.hpp"
+#include "tests/support/figure.hpp"
 
 namespace stiction::test {
 namespace {
@@ -56,6 +57,20 @@ class CamVibrationCli : public Cli {
     return written(name, text);
   }
 };
+
+// A rise that the drive follows, whose acceleration does not jump.
+constexpr const char* smooth_rise = R"(schema = "stiction.cam/1"
+[cam.smooth]
+cycle = "360 deg"
+slave = "rotary"
+modulo = "30 deg"
+[[cam.smooth.segment]]
+length = "180 deg"
+stroke = "30 deg"
+law = "polynomial_3_4_5"
+[[cam.smooth.segment]]
+end = "360 deg"
+)";
 
 constexpr const char* short_rise = R"(schema = "stiction.cam/1"
 [cam.short]
@@ -212,6 +227,36 @@ TEST_F(CamVibrationCli, SaysWhatALogLacksThatCannotBeTunedFrom) {
                  "found a master that turns at 780 °/s; expected the 600 °/s of --speed");
   expect_refused("tune-cam ../one.csv --machine cam-stand --speed '600 rpm' --cam " + stand(),
                  "found a rise of 0.72 periods of the load; expected 0.75 or more");
+}
+
+// Logs of the test rig that runs along a cam, with one cause each that the machine file does not know.
+TEST_F(CamVibrationCli, FindsInertiaAndDelayBehindTheMasterInLogsOfACam) {
+  const std::string cam = written("smooth.toml", smooth_rise);
+  std::ifstream in(fs::path(STICTION_SOURCE_DIR) / "firmware/machine/shipped/cam-stand.toml");
+  const std::string shipped{std::istreambuf_iterator<char>(in), {}};
+  const std::string late =
+      written("late.toml", shipped + "\n  [[axis.L.effect]]\n  name = \"master_delay\"\n  delay = \"300 us\"\n");
+  // The value behind `key` of the only finding.
+  const auto found = [&](const std::string& machine, const std::string& cause, const std::string& key) {
+    const auto run = stiction("simulate cam --machine " + machine + " --cam " + cam +
+                              " --speed '130 rpm' --cycles 12 --log ../cause.csv");
+    EXPECT_EQ(run.code, 0) << run.error;
+    const auto said = stiction("diagnose ../cause.csv --machine cam-stand");
+    EXPECT_NE(said.out.find("\n1. " + cause + ", axis L"), std::string::npos) << said.out << said.error;
+    EXPECT_EQ(said.out.find("\n2. "), std::string::npos) << said.out;
+    const std::size_t at = said.out.find(key + " = ");
+    return at == std::string::npos ? 0.0 : std::stod(said.out.substr(at + key.size() + 3));
+  };
+  const double delay = found(late, "master_delay", "delay_s");
+  EXPECT_NEAR(delay, 300e-6, 20e-6);
+  // A tenth more at the motor: 33 times 33 of it and the flywheel are at the output.
+  constexpr double motor = 0.00882844, whole = 33.0 * 33.0 * motor + 0.1035711;
+  const double inertia = found(fmt::format("cam-stand --set 'axis.L.transmission.motor_inertia={} kg m^2'", motor),
+                               "mass_mismatch", "mass_kg_m2");
+  EXPECT_NEAR(inertia, whole, 0.03 * whole);
+  figure("cam-stand, logs of a cam: delay behind the master off the true one; inertia off the true one",
+         fmt::format("{:.2f} us (bound 20 us); {:.3f} % (bound 3 %)", 1e6 * std::fabs(delay - 300e-6),
+                     100.0 * std::fabs(inertia / whole - 1.0)));
 }
 
 }  // namespace
