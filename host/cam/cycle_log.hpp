@@ -21,8 +21,8 @@ struct CycleSamples {
 // `unit`.
 std::optional<std::string> stop_in_cycle(const CycleSamples& samples, double master_speed, double scale,
                                          const std::string& unit);
-// The same of a master that turned on at a speed more than 2 % off `master_speed`, the mean over the cycle. `scale` and
-// `unit` as above, of a speed: the sentence says them per second.
+// The same of a master that turned on at a speed more than 2 % off `master_speed`, the mean over the
+// cycle in `samples`. `scale` and `unit` as above, of a speed: the sentence says them per second.
 std::optional<std::string> other_speed(const CycleSamples& samples, double master_speed, double scale,
                                        const std::string& unit);
 // The same of an encoder at its end, whose position stays while the set-points of `samples` go on. `range`: how far the
