@@ -48,10 +48,11 @@ constexpr int simplex_steps = 14, halving_sweeps = 3;
 constexpr double pulse_periods = 0.93;
 
 // The first cycle of a log. Throws UsageError for one that cannot be tuned from.
-// `speed`: of the master; `running`: of the cycle that the axis came to in its turn, and not of the one from where its
-// positions begin.
+// `task`: of the tuning, whose dwell is judged with an encoder of that `resolution`; `speed`: of the master; `running`:
+// of the cycle that the axis came to in its turn, and not of the one from where its positions begin.
 sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, const sim::cam::Motion& motion,
-                                double speed, bool running) {
+                                const sim::cam::ShapingTask& task, double resolution, bool running) {
+  const double speed = task.master_speed;
   const auto found = std::find_if(log.axes.begin(), log.axes.end(),
                                   [&](const AxisLog& each) { return each.axis == axis.name || each.axis.empty(); });
   if (found == log.axes.end())
@@ -90,8 +91,25 @@ sim::cam::CycleRecord record_of(const Log& log, const machine::AxisModel& axis, 
   const bool turns = motion.cam.master == sim::cam::Coordinate::rotary;
   const double scale = turns ? 180.0 / std::numbers::pi : 1e3;
   const std::string unit = turns ? "°" : "mm";
+  // The dwell, behind what the drive and an encoder lag.
+  constexpr double encoder_lag = 8e-3;
+  const auto begin = std::lower_bound(record.master.begin(), record.master.end(), settled(task) + encoder_lag * speed);
+  const auto end = std::upper_bound(begin, record.master.end(), std::min(task.dwell.end(), cycle));
+  const auto from = static_cast<std::size_t>(begin - record.master.begin());
+  const auto in_dwell = [&](std::span<const double> channel) {
+    return channel.empty() ? channel : channel.subspan(from, static_cast<std::size_t>(end - begin));
+  };
+  const CycleSamples dwell{in_dwell(samples.time), in_dwell(samples.master), in_dwell(samples.load),
+                           in_dwell(samples.set)};
+  const bool slave_turns = motion.cam.slave == sim::cam::Coordinate::rotary;
+  const DwellJudge judge{.frequency = 2.0 * std::numbers::pi / task.mode().period(),
+                         .resolution = resolution,
+                         .range = range,
+                         .scale = slave_turns ? 180.0 / std::numbers::pi : 1e3,
+                         .unit = slave_turns ? "°" : "mm"};
   for (const auto& fault :
-       {stop_in_cycle(samples, speed, scale, unit), encoder_at_its_end(samples, range, scale, unit)})
+       {stop_in_cycle(samples, speed, scale, unit), other_speed(samples, speed, scale, unit),
+        encoder_at_its_end(samples, range, scale, unit), cut_off_in_dwell(dwell, judge), motion_in_dwell(dwell, judge)})
     if (fault) throw UsageError(fmt::format("{}: {}", log.source, *fault));
   // A tick of the fastest motion is a thousandth of it.
   if (off > 5e-3 * range)
@@ -222,12 +240,18 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
       // Logs behind the end of the tuning are of production, whose gear may have become warm.
       for (std::size_t c = 0; c < count && (!tuner.done() || c < logs.size()); ++c) {
         const auto now = sim::cam::compose(tuner.cam());
-        auto record = !logs.empty()     ? record_of(logs[c], axis, now, speed, options.running)
+        auto record = !logs.empty()     ? record_of(logs[c], axis, now, task, settings.resolution, options.running)
                       : options.running ? simulated_running_record(machine, run, speed, c + 1)
                                         : simulated_record(machine, now, speed, c + 1);
         cycles.push_back({std::move(record), {}});
         auto& learned = cycles.back().learned;
-        learned = tuner.done() ? tuner.follow(cycles.back().record, false) : tuner.learn(cycles.back().record);
+        try {
+          learned = tuner.done() ? tuner.follow(cycles.back().record, false) : tuner.learn(cycles.back().record);
+        } catch (const sim::cam::CamError& error) {
+          // It is the log that lacks something, not the motion.
+          if (logs.empty()) throw;
+          throw UsageError(fmt::format("{}: {}", logs[c].source, error.what()));
+        }
         run.push_back(tuner.cam());
       }
       tuned = tuner.cam();
