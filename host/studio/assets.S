@@ -16,6 +16,7 @@ asset engine_js, "host/studio/web/engine.js"
 asset charts_js, "host/studio/web/charts.js"
 asset studio_js, "host/studio/web/studio.js"
 asset step_js, "host/studio/web/step.js"
+asset report_js, "host/studio/web/report.js"
 asset wasm, "studio.wasm"
 
   .section .note.GNU-stack, "", %progbits

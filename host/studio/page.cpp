@@ -26,6 +26,7 @@ STICTION_STUDIO_ASSET(engine_js)
 STICTION_STUDIO_ASSET(charts_js)
 STICTION_STUDIO_ASSET(studio_js)
 STICTION_STUDIO_ASSET(step_js)
+STICTION_STUDIO_ASSET(report_js)
 STICTION_STUDIO_ASSET(wasm)
 
 namespace stiction::host {
@@ -83,7 +84,7 @@ std::string studio_page(const StudioPageContent& content) {
                   {"speed", content.master_speed},
                   {"speed_text", content.speed_text}};
   const auto programme = wasm();
-  const std::string scripts = fmt::format("{}\n{}\n{}\n{}", engine_js(), charts_js(), studio_js(), step_js());
+  const std::string scripts = fmt::format("{}\n{}\n{}\n{}\n{}", engine_js(), charts_js(), studio_js(), report_js(), step_js());
   return fill_template(
       html(), {{"version", escape_html(content.version)},
                {"title", escape_html("Cam studio: " + studio.cam().name)},
