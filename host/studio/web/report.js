@@ -28,9 +28,9 @@ function picture(chart) {
 const pictures = charts => element('div', { class: 'pair' }, ...charts.map(picture));
 const repeated = (text, command) => element('p', { class: 'repeat' }, `${text} `, element('code', {}, command));
 
-// Cells that begin with a digit or a sign are numbers.
+// Cells that begin with a digit or a sign are numbers, but for the unit 1.
 function reportTable(heads, rows) {
-  const cell = text => element('td', { class: /^[−\d]/.test(text) ? 'number' : null }, text);
+  const cell = text => element('td', { class: /^[−\d]/.test(text) && text !== '1' ? 'number' : null }, text);
   return element('div', { class: 'wide' }, element('table', {}, element('thead', {}, element('tr', {}, ...heads.map(head => element('th', { scope: 'col' }, head)))),
     element('tbody', {}, ...rows.map(([first, ...others]) => element('tr', {}, element('th', { scope: 'row' }, first), ...others.map(cell))))));
 }

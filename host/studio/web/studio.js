@@ -400,7 +400,7 @@ function drawMachine() {
   } catch (error) {
     shownRun = null;
     at('machine-chart-name').textContent = '';
-    at('chart-5').replaceChildren();
+    at('machine-chart').classList.add('idle');
     at('figures').tBodies[0].replaceChildren(element('tr', {}, element('td', { colspan: 3, class: 'bad' }, `The machine does not run: ${error.message}`)));
     return;
   }
@@ -408,6 +408,7 @@ function drawMachine() {
   for (let i = 0; i < run.ticks.length; i += 3 * every) { xs.push(run.ticks[i] * u.master); ys.push(run.ticks[i + 1] * u.small); }
   shownRun = { xs, ys, unit: u.smallUnit, run };
   at('machine-chart-name').textContent = shaft ? 'Deviation of the load in the last cycle' : 'Following error in the last cycle';
+  if (at('machine-chart').classList.contains('idle')) { at('machine-chart').classList.remove('idle'); placeSizes.delete(at('chart-5')); }
   drawChart(at('chart-5'), machineChart());
   at('figures').tBodies[0].replaceChildren(...figureRows(run).map(row => element('tr', {}, element('th', { scope: 'row' }, row.text), element('td', { class: 'number' }, row.value), element('td', {}, row.unit))));
   times.machine = performance.now() - begun;
