@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include "host/report/assets.hpp"
 #include "host/report/base64.hpp"
@@ -55,16 +58,29 @@ std::string still_html(const Studio& studio, double speed) {
   const auto number = [](const json& value) {
     return value.is_number() ? fmt::format("{:.5g}", value.get<double>()) : "–";
   };
+  const auto unit = [](std::string text) {
+    for (const auto& [plain, raised] : {std::pair{"^2", "²"}, std::pair{"^3", "³"}})
+      if (const auto place = text.find(plain); place != std::string::npos) text.replace(place, 2, raised);
+    return escape_html(text);
+  };
   for (const auto& limit : state["limits"])
     rows += fmt::format("<tr><th>{}</th><td>{}</td><td>{}</td><td class=\"text\">{}</td></tr>",
                         escape_html(limit["name"].get<std::string>()), number(limit["found"]), number(limit["allowed"]),
-                        escape_html(limit["unit"].get<std::string>()));
+                        unit(limit["unit"].get<std::string>()));
+  // In the units of the page: degrees, or millimetres.
+  constexpr double degree = 180.0 / std::numbers::pi;
+  const auto length = [&](const char* side, double value) {
+    return state[side] == "rotary" ? fmt::format("{:.5g}°", degree * value) : fmt::format("{:.5g} mm", 1e3 * value);
+  };
   return fmt::format(
-      "<svg viewBox=\"0 0 600 160\" role=\"img\" aria-label=\"Position of {} over a cycle\"><path d=\"{}\" "
-      "fill=\"none\" "
-      "stroke=\"currentColor\" stroke-width=\"2\"/></svg><table><thead><tr><th>Limit</th><th>Found</th><th>Allowed</th>"
-      "<th>Unit</th></tr></thead><tbody>{}</tbody></table>",
-      escape_html(studio.cam().name), path, rows);
+      "<svg viewBox=\"-8 -26 616 208\" role=\"img\" aria-label=\"Position of {0} over a cycle of {1}, from {2} to "
+      "{3}\">"
+      "<path class=\"grid\" d=\"M0 10H600M0 150H600\"/><text class=\"axis\" y=\"-10\">position, up to {3}</text>"
+      "<text class=\"tick\" y=\"166\">lowest {2}</text><text class=\"tick end\" x=\"600\" y=\"166\">master, to "
+      "{1}</text>"
+      "<path class=\"curve\" d=\"{4}\"/></svg><table><thead><tr><th>Limit</th><th>Found</th><th>Allowed</th>"
+      "<th>Unit</th></tr></thead><tbody>{5}</tbody></table>",
+      escape_html(studio.cam().name), length("master", cycle), length("slave", low), length("slave", high), path, rows);
 }
 
 }  // namespace
@@ -85,7 +101,7 @@ std::string studio_page(const StudioPageContent& content) {
                   {"speed_text", content.speed_text}};
   const auto programme = wasm();
   const std::string scripts =
-      fmt::format("{}\n{}\n{}\n{}\n{}", engine_js(), charts_js(), report_js(), studio_js(), step_js());
+      fmt::format("{}\n{}\n{}\n{}\n{}", engine_js(), charts_js(), studio_js(), report_js(), step_js());
   return fill_template(
       html(), {{"version", escape_html(content.version)},
                {"title", escape_html("Cam studio: " + studio.cam().name)},

@@ -136,14 +136,19 @@ function placeTurnCharts() {
   }));
 }
 
+// The chart of one of STEP_CHARTS, as drawChart() takes it.
+function turnChart(shown) {
+  const xs = stepCam.turn.map(row => row[0] * DEGREE), series = shown.columns.map((column, i) => ({ xs, ys: stepCam.turn.map(row => row[column] * shown.factor), class: i ? 'second' : '' }));
+  const values = series.flatMap(each => each.ys).filter(Number.isFinite);
+  return { x: [0, 360], y: rangeOf(values, shown.zero ? [0] : []), xTicks: masterTicks(360, true), xLabel: 'cam, °', yLabel: shown.unit, series, name: shown.name, label: labelOf(shown.name, values, shown.unit) };
+}
+
 function drawTurnCharts() {
   for (let k = 0; k < MOST_CHARTS; ++k) {
     const node = at(`turn-chart-${k}`), shown = STEP_CHARTS.find(each => each.key === chosenCharts[k]);
     node.parentNode.classList.toggle('empty', !shown);
     if (!shown) { node.replaceChildren(); at(`turn-value-${k}`).textContent = ''; continue; }
-    const xs = stepCam.turn.map(row => row[0] * DEGREE), series = shown.columns.map((column, i) => ({ xs, ys: stepCam.turn.map(row => row[column] * shown.factor), class: i ? 'second' : '' }));
-    const values = series.flatMap(each => each.ys).filter(Number.isFinite);
-    node.chartFrame = drawChart(node, { x: [0, 360], y: rangeOf(values, shown.zero ? [0] : []), xTicks: masterTicks(360, true), xLabel: 'cam, °', yLabel: shown.unit, series, cursor: angle, label: labelOf(shown.name, values, shown.unit) });
+    node.chartFrame = drawChart(node, { ...turnChart(shown), cursor: angle });
     markAngle(node);
   }
 }
@@ -161,16 +166,21 @@ function markAngle(node) {
 
 const reliefName = arc => `${arc.valley ? 'Valley' : 'Peak'} of cam ${arc.cam + 1} at ${shownNumber(arc.begin * DEGREE)}°`;
 
+// What is taken off the profile of `cam`, in µm up to `top`.
+function reliefChart(cam, top) {
+  const profile = stepCam.profiles[cam], xs = profile.map(row => row[1] * DEGREE), ys = profile.map(row => 1e6 * (row[2] - row[3]));
+  const bands = stepCam.made.arcs.filter(arc => arc.cam === cam).flatMap(arc => arc.end > 2 * Math.PI ? [[arc.begin * DEGREE, 360], [0, arc.end * DEGREE - 360]] : [[arc.begin * DEGREE, arc.end * DEGREE]]);
+  return { x: [0, 360], y: [0, top], xTicks: masterTicks(360, true), xLabel: 'profile, °', yLabel: 'µm', series: [{ xs, ys, class: cam ? 'orange' : '' }], bands, name: `Relief of cam ${cam + 1}`, label: labelOf(`Relief of cam ${cam + 1}`, ys, 'µm') };
+}
+
 function drawRelief() {
   const focused = document.activeElement?.dataset?.arc, focusedBlend = document.activeElement?.dataset?.blend;
   const deepest = Math.max(20, ...stepCam.made.arcs.map(arc => 1e6 * arc.depth));
   if (!reliefDrag) stepCam.reliefTop = 1.25 * deepest;
   else stepCam.reliefTop = reliefDrag.top;
   for (const cam of [0, 1]) {
-    const node = at(`relief-${cam}`), profile = stepCam.profiles[cam], xs = profile.map(row => row[1] * DEGREE), ys = profile.map(row => 1e6 * (row[2] - row[3]));
-    const own = stepCam.made.arcs.map((arc, k) => [arc, k]).filter(([arc]) => arc.cam === cam);
-    const bands = own.flatMap(([arc]) => arc.end > 2 * Math.PI ? [[arc.begin * DEGREE, 360], [0, arc.end * DEGREE - 360]] : [[arc.begin * DEGREE, arc.end * DEGREE]]);
-    const frame = drawChart(node, { x: [0, 360], y: [0, stepCam.reliefTop], xTicks: masterTicks(360, true), xLabel: 'profile, °', yLabel: 'µm', series: [{ xs, ys, class: cam ? 'orange' : '' }], bands, handles: true, label: labelOf(`Relief of cam ${cam + 1}`, ys, 'µm') });
+    const node = at(`relief-${cam}`), own = stepCam.made.arcs.map((arc, k) => [arc, k]).filter(([arc]) => arc.cam === cam);
+    const frame = drawChart(node, { ...reliefChart(cam, stepCam.reliefTop), handles: true });
     node.chartFrame = frame;
     for (const [arc, k] of own) {
       const add = (x, y, attributes, text) => {
@@ -261,10 +271,8 @@ function endReliefDrag() {
 
 // ---- the project's numbers ----
 
-const shownUnit = unit => ({ deg: '°', rpm: '/min', 'kg m^2': 'kg m²', um: 'µm', 'N/um': 'N/µm' })[unit] ?? unit;
-
 function stepField(number) {
-  const unit = shownUnit(number.unit);
+  const unit = { deg: '°', rpm: '/min', 'kg m^2': 'kg m²', um: 'µm', 'N/um': 'N/µm' }[number.unit] ?? number.unit;
   return field(number.text, number.value, unit, value => {
     attempt(() => engine.call('step_number', { text: number.name, x: value ?? 0, flag: value === null ? 0 : 1 }));
     refreshStep();

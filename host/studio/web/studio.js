@@ -94,35 +94,36 @@ const labelOf = (name, ys, unit) => {
   return `${name} over a cycle, from ${shownNumber(low)} to ${shownNumber(high)} ${unit}`;
 };
 
+// The speed, acceleration and jerk, and the further curves, as drawChart() takes them, by their keys: of a set of columns.
+function curveChart(key, columns, u) {
+  const w = masterSpeed, cycle = state.cycle * u.master;
+  const chart = (name, unit, ys, marks, levels = []) => ({ x: [0, cycle], xTicks: masterTicks(cycle, state.master === 'rotary'), xLabel: `master, ${u.masterUnit}`,
+    y: rangeOf(ys, levels), yLabel: unit, series: [{ xs: scaled(columns[0], u.master), ys }], marks, levels, name, label: labelOf(name, ys, unit) });
+  if (key === 'position') return chart('Position', u.slaveUnit, scaled(columns[1], u.slave), marksOf(0, ['travel'], u.slave, u));
+  if (key === 'product') return chart('Product of speed and acceleration', u.product, columns[5], []);
+  if (key === 'effort') {
+    const efforts = state.limits.map(limit => limit.name).filter(name => /torque|force/.test(name));
+    return chart(`${u.effort === 'N' ? 'Force' : 'Torque'} of the motor`, u.effort, columns[6], marksOf(9, efforts, 1, u), levelsOf(efforts, 1, columns[6]));
+  }
+  if (key === 'spectrum') {
+    const ys = scaled(engine.call('harmonics', { at: HARMONICS }).table, u.slave * w * w), first = w / state.cycle;
+    return { x: [0, (HARMONICS + 1) * first], y: [0, rangeOf(ys)[1]], xLabel: 'frequency, Hz', yLabel: `${u.slaveUnit}/s²`, name: 'Spectrum of the acceleration',
+      series: [{ xs: Float64Array.from(ys, (_, k) => (k + 1) * first), ys, bars: true }], label: `Spectrum of the acceleration, ${HARMONICS} harmonics, largest ${shownNumber(Math.max(...ys))} ${u.slaveUnit}/s²` };
+  }
+  const order = ['position', 'speed', 'acceleration', 'jerk'].indexOf(key), limits = order < 3 ? [key] : [], ys = scaled(columns[order + 1], u.slave * w ** order);
+  return chart(['', 'Speed', 'Acceleration', 'Jerk'][order], u.slaveUnit + ['', '/s', '/s²', '/s³'][order], ys, marksOf(order, limits, u.slave, u), levelsOf(limits, u.slave, ys));
+}
+
+const readCurves = () => curveColumns(engine.call('curves', { x: masterSpeed, at: CURVE_POINTS }).table);
+
 function drawCurves() {
   const focused = document.activeElement?.dataset?.handle;  // drawing replaces it
-  const u = shownUnits(), w = masterSpeed, columns = curveColumns(engine.call('curves', { x: w, at: CURVE_POINTS }).table);
-  const xs = scaled(columns[0], u.master), cycle = state.cycle * u.master;
-  const common = { x: [0, cycle], xTicks: masterTicks(cycle, state.master === 'rotary'), xLabel: `master, ${u.masterUnit}` };
-  const draw = (id, name, unit, ys, marks, levels = [], more = {}) => drawChart(at(id), {
-    ...common, y: rangeOf(ys, levels), yLabel: unit, series: [{ xs, ys }], marks, levels, label: labelOf(name, ys, unit), ...more });
-  const position = scaled(columns[1], u.slave);
-  if (!frozen) frozen = rangeOf(position);
-  const frame = draw('chart-0', 'Position', u.slaveUnit, position, marksOf(0, ['travel'], u.slave, u), [], { y: frozen, handles: true });
+  const u = shownUnits(), columns = readCurves(), position = curveChart('position', columns, u);
+  if (!frozen) frozen = position.y;
+  const frame = drawChart(at('chart-0'), { ...position, y: frozen, handles: true });
   if (!dragging) frozen = null;
   placeHandles(frame, u, focused);
-  const perSecond = ['', '/s', '/s²', '/s³'], names = ['', 'Speed', 'Acceleration', 'Jerk'], limits = [[], ['speed'], ['acceleration'], []];
-  for (let order = 1; order <= 3; ++order) {
-    const ys = scaled(columns[order + 1], u.slave * w ** order);
-    draw(`chart-${order}`, names[order], u.slaveUnit + perSecond[order], ys, marksOf(order, limits[order], u.slave, u), levelsOf(limits[order], u.slave, ys));
-  }
-  const chosen = at('fourth').value;
-  if (chosen === 'product') draw('chart-4', 'Product of speed and acceleration', u.product, columns[5], []);
-  if (chosen === 'effort') {
-    const efforts = state.limits.map(limit => limit.name).filter(name => /torque|force/.test(name));
-    draw('chart-4', 'Torque of the motor', u.effort, columns[6], marksOf(9, efforts, 1, u), levelsOf(efforts, 1, columns[6]));
-  }
-  if (chosen === 'spectrum') {
-    const ys = scaled(engine.call('harmonics', { at: HARMONICS }).table, u.slave * w * w), first = w / state.cycle;
-    const frequencies = Float64Array.from(ys, (_, k) => (k + 1) * first), highest = (HARMONICS + 1) * first;
-    drawChart(at('chart-4'), { x: [0, highest], y: [0, rangeOf(ys)[1]], xLabel: 'frequency, Hz', yLabel: `${u.slaveUnit}/s²`, series: [{ xs: frequencies, ys, bars: true }],
-      label: `Spectrum of the acceleration, ${HARMONICS} harmonics, largest ${shownNumber(Math.max(...ys))} ${u.slaveUnit}/s²` });
-  }
+  ['speed', 'acceleration', 'jerk', at('fourth').value].forEach((key, k) => drawChart(at(`chart-${k + 1}`), curveChart(key, columns, u)));
 }
 
 // ---- handles ----
@@ -173,8 +174,7 @@ function startDrag(event) {
   event.preventDefault();
   const k = Number(handle.dataset.handle), chart = at('chart-0');
   select(k);
-  const u = shownUnits(), ys = scaled(curveColumns(engine.call('curves', { x: masterSpeed, at: CURVE_POINTS }).table)[1], u.slave);
-  frozen = rangeOf(ys);
+  frozen = curveChart('position', readCurves(), shownUnits()).y;
   dragging = { k, moved: false };
   chart.setPointerCapture(event.pointerId);
   refresh();
@@ -348,11 +348,11 @@ function drawRules() {
 
 // ---- machine ----
 
-const speedText = () => `${plainNumber(masterSpeed * shownUnits().speed)} ${shownUnits().speedUnit}`;
+const speedText = (speed = masterSpeed) => `${plainNumber(speed * shownUnits().speed)} ${shownUnits().speedUnit}`;
 
-function repeatingCommand() {
+function repeatingCommand(speed = masterSpeed) {
   const machine = machineName.replace(/[.]toml$/, ''), stiffness = Number(at('stiffness').value) / 100;
-  return `stiction simulate cam --machine ${machine} --cam ${motionName} --speed "${speedText()}" --cycles ${at('cycles').value}${at('run').value === 'shaft' ? ' --model cascade' : ''}`
+  return `stiction simulate cam --machine ${shellWord(machine)} --cam ${shellWord(motionName)}${state.cams.length > 1 ? ` --name ${shellWord(state.name)}` : ''} --speed "${speedText(speed)}" --cycles ${at('cycles').value}${at('run').value === 'shaft' ? ' --model cascade' : ''}`
     + (stiffness !== 1 && at('run').value === 'shaft' ? ` --set "axis.${state.machine.axis}.transmission.stiffness=${Number((state.machine.stiffness * stiffness).toPrecision(9))} ${state.slave === 'rotary' ? 'N m/rad' : 'N/m'}"` : '');
 }
 
@@ -370,6 +370,13 @@ function figureRows(run) {
   return rows;
 }
 
+function machineChart() {
+  const u = shownUnits(), { xs, ys } = shownRun, name = at('machine-chart-name').textContent;
+  const series = [...(kept && kept.unit === u.smallUnit ? [{ ...kept, class: 'before' }] : []), { xs, ys, class: 'second' }];
+  return { x: [0, state.cycle * u.master], xTicks: masterTicks(state.cycle * u.master, state.master === 'rotary'), xLabel: `master, ${u.masterUnit}`,
+    y: rangeOf(series.flatMap(each => each.ys)), yLabel: u.smallUnit, series, name, label: labelOf(name, ys, u.smallUnit) };
+}
+
 function drawMachine() {
   const machine = state.machine;
   at('machine-name').textContent = machine ? machine.name : 'No machine';
@@ -380,7 +387,7 @@ function drawMachine() {
     at('machine-sentence').textContent = 'Open a machine file, or write the page with --machine, to see what an axis does with this motion.';
     at('chart-5').replaceChildren();
     at('figures').tBodies[0].replaceChildren();
-    at('command').textContent = `stiction cam check ${motionName}`;
+    at('command').textContent = `stiction cam check ${shellWord(motionName)}`;
     return;
   }
   at('machine-sentence').textContent = `axis ${machine.axis}${machine.frequency ? `, natural frequency ${shownNumber(machine.frequency * Math.sqrt(Number(at('stiffness').value) / 100))} Hz` : ''}`;
@@ -393,17 +400,16 @@ function drawMachine() {
   } catch (error) {
     shownRun = null;
     at('machine-chart-name').textContent = '';
-    at('chart-5').replaceChildren();
+    at('machine-chart').classList.add('idle');
     at('figures').tBodies[0].replaceChildren(element('tr', {}, element('td', { colspan: 3, class: 'bad' }, `The machine does not run: ${error.message}`)));
     return;
   }
   const every = Math.max(1, Math.floor(run.ticks.length / 3 / 1500)), xs = [], ys = [];
   for (let i = 0; i < run.ticks.length; i += 3 * every) { xs.push(run.ticks[i] * u.master); ys.push(run.ticks[i + 1] * u.small); }
   shownRun = { xs, ys, unit: u.smallUnit, run };
-  const series = [...(kept && kept.unit === u.smallUnit ? [{ ...kept, class: 'before' }] : []), { xs, ys, class: 'second' }];
   at('machine-chart-name').textContent = shaft ? 'Deviation of the load in the last cycle' : 'Following error in the last cycle';
-  drawChart(at('chart-5'), { x: [0, state.cycle * u.master], xTicks: masterTicks(state.cycle * u.master, state.master === 'rotary'), xLabel: `master, ${u.masterUnit}`,
-    y: rangeOf(series.flatMap(each => each.ys)), yLabel: u.smallUnit, series, label: labelOf(at('machine-chart-name').textContent, ys, u.smallUnit) });
+  if (at('machine-chart').classList.contains('idle')) { at('machine-chart').classList.remove('idle'); placeSizes.delete(at('chart-5')); }
+  drawChart(at('chart-5'), machineChart());
   at('figures').tBodies[0].replaceChildren(...figureRows(run).map(row => element('tr', {}, element('th', { scope: 'row' }, row.text), element('td', { class: 'number' }, row.value), element('td', {}, row.unit))));
   times.machine = performance.now() - begun;
 }
@@ -416,7 +422,7 @@ function machineSoon() {
 // ---- sweep of the speed ----
 
 const SWEEP = { points: 21, least: 0.5, most: 1.5 };
-let sweeping = 0;
+let sweeping = 0, swept = null;
 
 // A run at each speed, one after the other so that the page stays alive; a change of the motion ends it.
 function sweep() {
@@ -435,9 +441,10 @@ function sweep() {
       xs.push(speed * u.speed);
       ys.push((shaft && figures.dwell !== null ? figures.dwell : figures.peakError) * u.small);
     } catch { /* beyond what the axis does: a gap in the curve */ }
-    if (xs.length) drawChart(at('chart-6'), { x: [masterSpeed * SWEEP.least * u.speed, masterSpeed * SWEEP.most * u.speed], y: [0, rangeOf(ys, [0])[1]], xLabel: `speed of the master, ${u.speedUnit}`, yLabel: u.smallUnit,
+    swept = { x: [masterSpeed * SWEEP.least * u.speed, masterSpeed * SWEEP.most * u.speed], y: [0, rangeOf(ys, [0])[1]], xLabel: `speed of the master, ${u.speedUnit}`, yLabel: u.smallUnit, name,
       series: [{ xs, ys, class: 'second' }], marks: highest < masterSpeed * SWEEP.most && highest > masterSpeed * SWEEP.least ? [{ x: highest * u.speed, y: 0, text: `limits of the axis are kept up to ${withUnit(highest * u.speed, u.speedUnit)}` }] : [],
-      label: labelOf(name, ys, u.smallUnit) });
+      label: xs.length ? labelOf(name, ys, u.smallUnit) : name };
+    if (xs.length) drawChart(at('chart-6'), swept);
     if (k + 1 < SWEEP.points) setTimeout(next, 0, k + 1);
   };
   next(0);
@@ -463,6 +470,7 @@ function keepRun(run) {
 
 function refresh() {
   ++sweeping;
+  swept = null;
   at('swept').hidden = true;
   for (let k = 0; k < 6; ++k) sizeOf(at(`chart-${k}`));
   const begun = performance.now();
@@ -505,7 +513,7 @@ function offer(name, type, content) {
 const save = () => offer(motionName, 'application/toml', engine.call('motion_text').text);
 
 function saveCurves() {
-  const u = shownUnits(), columns = curveColumns(engine.call('curves', { x: masterSpeed, at: CURVE_POINTS }).table), n = columns[0].length;
+  const u = shownUnits(), columns = readCurves(), n = columns[0].length;
   const m = state.master === 'rotary' ? 'rad' : 'm', s = state.slave === 'rotary' ? 'rad' : 'm';
   const head = [`master[${m}]`, `s[${s}]`, `v[${s}/${m}]`, `a[${s}/${m}^2]`, `j[${s}/${m}^3]`, 'product', `effort[${u.effort}]`];
   const rows = Array.from({ length: n }, (_, i) => columns.map(column => String(column[i])).join(','));
@@ -548,7 +556,7 @@ function listen() {
   at('file').addEventListener('change', () => { openFiles(at('file').files).finally(() => { at('file').value = ''; }); });
   at('save').addEventListener('click', save);
   at('points').addEventListener('click', saveCurves);
-  at('report').addEventListener('click', () => offer(`${state.name}-report.html`, 'text/html', reportPage()));
+  at('report').addEventListener('click', saveReport);
   at('sweep').addEventListener('click', sweep);
   at('export').addEventListener('click', saveExport);
   at('speed').addEventListener('change', () => {
