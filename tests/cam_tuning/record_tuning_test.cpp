@@ -141,7 +141,7 @@ TEST(RunningTuning, AGearThatWarmsIsFollowedInProduction) {
 
 // The machine runs on: behind twelve cycles of the untuned motion, each next one has what the tuner made of the last.
 TEST(RunningTuning, OneCycleLaterTheLoadIsStillAndStaysSo) {
-  double worst = 0.0, later = 0.0;
+  double worst = 0.0, later = 0.0, settled = 0.0, of_worst = 0.0;
   int cases = 0, within = 0;
   for (const double rise : {120.0, 180.0})
     for (const double factor : {0.8, 0.9, 1.0, 1.1, 1.2}) {
@@ -157,20 +157,26 @@ TEST(RunningTuning, OneCycleLaterTheLoadIsStillAndStaysSo) {
         if (!tuner.done()) tuner.learn(run_on(truth, cams).last);
         cams.push_back(tuner.cam());
       }
-      qualities = run_on(truth, cams).qualities;
+      const auto ran = run_on(truth, cams);
+      qualities = ran.qualities;
       if (qualities[before - 1] <= 1.56) continue;  // it needs no tuning
       ++cases;
       within += *std::max_element(qualities.begin() + before, qualities.end()) <= 0.6;
-      worst = std::max(worst, qualities[before]);
+      if (qualities[before] > worst) worst = qualities[before], of_worst = ran.settled[before];
+      for (std::size_t k = before; k < qualities.size(); ++k) settled = std::max(settled, ran.settled[k]);
       for (std::size_t k = before + 1; k < qualities.size(); ++k) later = std::max(later, qualities[k]);
     }
-  // Wanted are 0.6 of all; the one that begins with 416 deg^2 keeps 0.62.
+  // Wanted are 0.6 of all; the one that begins with 416 deg^2 has 0.62, of which 0.43 is in the first 20 degrees of the
+  // dwell, where the drive has not settled yet. Pulses for the load's mode do not take that away.
   EXPECT_GE(within, cases - 1);
   EXPECT_LE(worst, 1.56);
   EXPECT_LE(later, 0.6);
+  EXPECT_LE(settled, 0.6);
   test::figure(
       "cam tuning: running on: J in the cycle behind the record, in those behind it, at most, within 0.6 always",
       fmt::format("{:.2f}, {:.2f} deg^2, {} of {}", worst, later, within, cases));
+  test::figure("cam tuning: running on: J behind the first 20 degrees of the dwell, in the worst cycle and at most",
+               fmt::format("{:.2f}, {:.2f} deg^2", of_worst, settled));
 }
 
 // A cycle that has not been run is what the search asks for.

@@ -51,9 +51,10 @@ struct Cycle {
 // draws the noise.
 Cycle run(const Truth& truth, const sim::cam::Motion& motion, std::uint64_t number, int cycles = 1);
 
-// The quality of each cycle of a machine that runs along `cams` in turn, and the record of the last.
+// The quality of each cycle of a machine that runs along `cams` in turn, and the record of the last one.
 struct Running {
   std::vector<double> qualities;  // deg^2
+  std::vector<double> settled;    // deg^2, the same without the first 20 degrees, in which the drive itself settles
   sim::cam::CycleRecord last;
 };
 Running run_on(const Truth& truth, const std::vector<sim::cam::Cam>& cams);
