@@ -141,10 +141,8 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
 std::string said_of(const ChangedParameter& changed) {
   return fmt::format(
       "The held-out records are of a different state of the machine. {0}: {1} = {2:.4g} {3} in them, {4:.4g} {3} in "
-      "the "
-      "training records; the difference has a standard error of {5:.2g} {3}. Causes were confirmed on the held-out "
-      "force "
-      "without this difference; the positions of the closed loop have it.",
+      "the training records; the difference has a standard error of {5:.2g} {3}. Causes were confirmed on the "
+      "held-out force without this difference; the positions of the closed loop have it.",
       changed.effect->title, changed.key, changed.held_out, changed.unit, changed.training, changed.standard_error);
 }
 
@@ -154,9 +152,14 @@ Eigen::VectorXd in_same_state(Verdict& verdict, const Prepared& prepared, const 
   const auto &training = prepared.training, &held_out = prepared.held_out;
   Eigen::VectorXd target = held_out.target;
   if (verdict.holdout_is_a_part) return target;
-  const Eigen::VectorXd rest = without_terms(held_out.regressors, target, prepared.context, found.terms);
-  for (const auto& change : changes_between({training.regressors, found.residual}, {held_out.regressors, rest},
-                                            prepared.context, found.terms)) {
+  // What has no name is a force of its own records.
+  std::vector<Term> named;
+  std::copy_if(found.terms.begin(), found.terms.end(), std::back_inserter(named),
+               [](const Term& term) { return !candidates()[term.candidate].outside(); });
+  const Eigen::VectorXd left = less(training.target, prepared, named);
+  const Eigen::VectorXd rest = without_terms(held_out.regressors, target, prepared.context, named);
+  for (const auto& change :
+       changes_between({training.regressors, left}, {held_out.regressors, rest}, prepared.context, named)) {
     target -= change.force;
     const auto changed = changed_parameter(prepared.context, change);
     verdict.notes.push_back(said_of(changed));

@@ -20,8 +20,8 @@ struct HeldOutFigures {
   HeldOutAmplitude together;
 };
 
-// The `target` (N, residual force of the held-out `rows`) less what the `terms` of a search make there, a ripple's
-// phase as it fits each record best. `context`: of the search.
+// The `target` (N, residual force of the held-out `rows`) less what the named `terms` of a search make there, a
+// ripple's phase as it fits each record best. `context`: of the search.
 Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                               std::span<const Term> terms);
 
