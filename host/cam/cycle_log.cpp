@@ -132,8 +132,7 @@ std::optional<std::string> motion_in_dwell(const CycleSamples& dwell, const Dwel
   if (std::fabs(way) <= moving_share * judge.range) return std::nullopt;
   return fmt::format(
       "found a load that still moves by {:.3g} {} in the dwell; expected an axis at rest there, which does no more "
-      "than "
-      "vibrate",
+      "than vibrate",
       way * judge.scale, judge.unit);
 }
 

@@ -286,6 +286,8 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
   const bool mass = fit.inflation[0] < separable, friction = fit.inflation[2] < separable;
   const bool sign_is_asked =
       std::ranges::any_of(out.questions, [](const auto& q) { return q.about == Question::About::sign; });
+  // A negative mass beside friction that opposes the motion is a contact that yields in small oscillations
+  // (questions.cpp); of a current that is late a question tells.
   if (sign_is_asked)
     ;  // the question says it
   else if (mass && negative(0) && (!friction || negative(2)))
@@ -293,10 +295,6 @@ void add_suspicions(const Log&, const AxisLog& axis, const KnownAxis& known, Axi
         fmt::format("{} falls when the axis accelerates: its sign, or that of the position, is swapped; reverse one of "
                     "them (reverse = true in a mapping)",
                     out.effort->name));
-  else if (mass && negative(0))
-    out.suspicions.push_back(fmt::format(
-        "{} falls with the acceleration but opposes friction: it is recorded late, or does not belong to this motor",
-        out.effort->name));
   else if (friction && negative(2))
     out.suspicions.push_back(
         fmt::format("{} is smaller in the direction of motion than against it, which would be negative friction; the "

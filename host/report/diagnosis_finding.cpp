@@ -112,7 +112,9 @@ std::string rest_of(const Verdict& verdict) {
 std::string percent(double share) { return fmt::format("{:.{}f}", 100.0 * share, std::abs(share) < 0.1 ? 1 : 0); }
 std::string deviation_text(double linear, const ShownQuantity& shown) { return fmt::format("{:.2g}", shown(linear)); }
 
-std::string diagnosis_sentence(const Verdict& verdict) {
+namespace {
+
+std::string sentence_on_causes(const Verdict& verdict) {
   if (named_causes(verdict.findings) == 0) {
     const auto gain = verdict.findings.empty() ? "" : worth(verdict.baseline, verdict.extended, verdict);
     if (gain.empty()) return typeset(nothing_found(verdict));
@@ -129,6 +131,22 @@ std::string diagnosis_sentence(const Verdict& verdict) {
                                verdict.units.force(verdict.extended.force_rms), verdict.units.force.unit));
   return typeset(fmt::format("{}; with it, the simulation's deviation on held-out data falls: {}{}.", missing, gain,
                              rest_of(verdict)));
+}
+
+// What is not the same in the held-out records; empty where nothing is.
+std::string sentence_on_state(const Verdict& verdict) {
+  std::string changed;
+  for (const auto& each : verdict.changed)
+    changed += fmt::format("{} {} {:.4g} {} instead of {:.4g} {}", changed.empty() ? "" : ",", each.key, each.held_out,
+                           each.unit, each.training, each.unit);
+  return changed.empty() ? ""
+                         : fmt::format(" The held-out records are of a different state of the machine:{}.", changed);
+}
+
+}  // namespace
+
+std::string diagnosis_sentence(const Verdict& verdict) {
+  return sentence_on_causes(verdict) + typeset(sentence_on_state(verdict));
 }
 
 }  // namespace stiction::host

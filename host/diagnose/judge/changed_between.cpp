@@ -6,14 +6,15 @@
 
 #include "host/algebra/least_squares.hpp"
 #include "host/diagnose/classes/candidate_columns.hpp"
+#include "host/diagnose/statistics/fisher.hpp"
 #include "host/diagnose/statistics/whitening.hpp"
 #include "host/identify/regression.hpp"
 
 namespace stiction::host {
 namespace {
 
-// Normal quantile of 1 % for four parameters together, either sign: 1 - 0.01 / 8.
-constexpr double significant = 3.02;
+// For all parameters together (Bonferroni).
+constexpr double level = 0.01;
 // Of the held-out force, rms: what moves it by less changes no judgement.
 constexpr double relevant = 0.01;
 
@@ -68,6 +69,13 @@ struct WhiteRows {
   }
 };
 
+// Of the blocks in the logs from `first` on: each is one piece of evidence.
+double freedom_of(const WhiteRows& rows, std::size_t first) {
+  const auto blocks = std::count_if(rows.blocks.begin(), rows.blocks.end(),
+                                    [&](const RowBlock& block) { return block.begin >= rows.logs[first]; });
+  return static_cast<double>(std::max<std::ptrdiff_t>(blocks - 1, 1));
+}
+
 // The weight of `column` beside those of `others`, and its error from the blocks' sums (Cameron, Gelbach, Miller 2008).
 Difference difference(const WhiteRows& rows, const Eigen::MatrixXd& others, const Eigen::VectorXd& column) {
   const PivotedLeastSquares solver(others);
@@ -86,20 +94,27 @@ Difference difference(const WhiteRows& rows, const Eigen::MatrixXd& others, cons
   return found;
 }
 
-// By how much more than by chance one of the first `training` logs differs from the others of them, mean square.
+// By how much more than by chance one of the first `training` logs differs from the others of them, mean square. A log
+// that hardly tells the parameter says little of it (DerSimonian, Laird 1986).
 double scatter_among(const WhiteRows& rows, std::size_t training, Eigen::Index column) {
-  if (training < 2) return 0.0;
-  double sum = 0.0;
-  for (std::size_t log = 0; log < training; ++log) {
-    // The held-out logs have weights of their own, and say nothing here.
-    Eigen::MatrixXd others(rows.force.size(), 2 * rows.columns.cols());
-    others.leftCols(rows.columns.cols()) = rows.columns;
-    for (Eigen::Index c = 0; c < rows.columns.cols(); ++c)
-      others.col(rows.columns.cols() + c) = rows.in_logs(c, training, rows.logs.size() - 1);
+  // The held-out logs have weights of their own, and say nothing here.
+  const auto count = rows.columns.cols();
+  Eigen::MatrixXd others(rows.force.size(), 2 * count);
+  others.leftCols(count) = rows.columns;
+  for (Eigen::Index c = 0; c < count; ++c) others.col(count + c) = rows.in_logs(c, training, rows.logs.size() - 1);
+  double logs = 0.0, sum = 0.0, squares = 0.0, first = 0.0, second = 0.0;
+  for (std::size_t log = 0; training > 1 && log < training; ++log) {
     const auto own = difference(rows, others, rows.in_logs(column, log, log));
-    sum += std::max(own.weight * own.weight - own.square, 0.0);
+    if (own.square <= 0.0) continue;
+    const double precision = 1.0 / own.square;
+    logs += 1.0;
+    sum += precision;
+    squares += precision * precision;
+    first += precision * own.weight;
+    second += precision * own.weight * own.weight;
   }
-  return sum / static_cast<double>(training);
+  const double spread = sum > 0.0 ? sum - squares / sum : 0.0;
+  return spread > 0.0 ? std::max((second - first * first / sum - (logs - 1.0)) / spread, 0.0) : 0.0;
 }
 
 }  // namespace
@@ -127,6 +142,7 @@ std::vector<StateChange> changes_between(const StateRows& training, const StateR
   white.blocks = blocks_of(velocity, logs, static_cast<std::size_t>(velocity.size() / 60 + 1));
 
   const double least = relevant * rms(held_out.rows.force.cwiseProduct(held_out.rows.counts()));
+  const double freedom = freedom_of(white, first);
   std::vector<StateChange> changes;
   Eigen::MatrixXd others = white.columns;
   std::vector<bool> taken(parameters.size(), false);
@@ -140,7 +156,8 @@ std::vector<StateChange> changes_between(const StateRows& training, const StateR
       auto found = difference(white, others, white.in_logs(column, first, logs.size() - 1));
       if (std::abs(found.weight) * rms(of_held_out[c]) < least) continue;
       found.square += scatter_among(white, first, column);
-      if (std::abs(found.deviations()) <= std::max(significant, std::abs(most.deviations()))) continue;
+      if (std::abs(found.deviations()) <= std::abs(most.deviations())) continue;
+      if (student_tails(found.deviations(), freedom) > level / static_cast<double>(parameters.size())) continue;
       surest = c;
       most = found;
     }

@@ -6,6 +6,7 @@
 
 #include "host/diagnose/diagnose.hpp"
 #include "host/diagnose/verdict/verdict_json.hpp"
+#include "host/report/diagnosis_finding.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/machine_file.hpp"
 
@@ -49,6 +50,7 @@ TEST(ChangedBetween, AWorkpieceIsSaidAndTheRippleOfBothIsFound) {
   EXPECT_EQ(verdict.findings.front().effect.name(), "force_ripple");
   const auto json = host::verdict_json(verdict);
   EXPECT_EQ(json.at("changed").at(0).at("parameter"), "mass_kg");
+  EXPECT_NE(host::diagnosis_sentence(verdict).find("different state of the machine: mass "), std::string::npos);
 }
 
 // In the units of a joint: N m.
