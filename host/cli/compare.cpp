@@ -6,7 +6,7 @@
 
 #include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
-#include "host/cli/circle_output.hpp"
+#include "host/output/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/compare_output.hpp"
 #include "host/cli/errors.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "host/cli/circle_output.hpp"
+#include "host/output/circle_output.hpp"
 #include "host/log/own_units.hpp"
 #include "host/simulate/replay.hpp"
 

@@ -18,6 +18,7 @@
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
+#include "host/requests/axis_choice.hpp"
 
 namespace stiction::host {
 namespace {
@@ -33,34 +34,6 @@ struct DiagnoseCommandOptions {
   bool identify = false;
   bool json = false;
 };
-
-// By index: the one that is named, else each that every log has channels of.
-std::vector<std::size_t> axes_of_run(const std::string& name, const machine::Machine& machine,
-                                     const std::vector<Log>& logs) {
-  const auto names = axis_names(machine);
-  if (!name.empty()) {
-    require_known("--axis", name, "an axis of " + machine.id, names);
-    const auto found = std::find(names.begin(), names.end(), name);
-    return {static_cast<std::size_t>(found - names.begin())};
-  }
-  const auto has = [](const Log& log, const std::string& axis) {
-    return std::any_of(log.axes.begin(), log.axes.end(), [&](const AxisLog& c) { return c.axis == axis; });
-  };
-  for (const auto& log : logs)
-    if (has(log, "") && names.size() > 1)
-      throw UsageError(
-          fmt::format("--axis: found none, but {} has channels without an axis, and {} has {} axes; "
-                      "expected one of {}",
-                      log.source, machine.id, names.size(), fmt::join(names, ", ")));
-  std::vector<std::size_t> shared;
-  for (std::size_t k = 0; k < names.size(); ++k)
-    if (std::all_of(logs.begin(), logs.end(), [&](const Log& log) { return has(log, "") || has(log, names[k]); }))
-      shared.push_back(k);
-  if (shared.empty())
-    throw UsageError(fmt::format("{}: found no axis that all logs and {} share; expected channels of {}",
-                                 logs.front().source, machine.id, fmt::join(names, ", ")));
-  return shared;
-}
 
 std::string start_sentence(const std::vector<StartValue>& values) {
   std::vector<std::string> all;
@@ -87,7 +60,7 @@ void run(const DiagnoseCommandOptions& options, const Invocation& invocation) {
   input.held_out = read_logs(options.held_out, options.columns);
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
-  const auto axes = axes_of_run(options.axis, input.machine, all);
+  const auto axes = axes_to_diagnose(options.axis, input.machine, all);
   input.seed = options.seed;
   DiagnosedFile file{machine::find_machine(options.machine.machine), options.machine.set};
   const IntermediateFolder folder;

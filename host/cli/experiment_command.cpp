@@ -5,11 +5,10 @@
 #include <algorithm>
 #include <memory>
 
-#include "firmware/machine/file/units.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/experiment_result_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
@@ -17,7 +16,6 @@
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/simulate/experiments.hpp"
-#include "sim/plant/friction/coulomb_viscous.hpp"
 
 namespace stiction::host {
 namespace {
@@ -32,28 +30,6 @@ struct ExperimentOptions {
   std::string out;
   bool json = false;
 };
-
-// Without --friction: every model that the experiment makes sense for and that the machine has.
-std::vector<std::string> models_for(const Experiment& experiment, const std::string& text,
-                                    const machine::Machine& machine) {
-  auto names = friction_models(text.empty() ? "all" : text, machine);
-  const auto models = needs_of(experiment.name).friction;
-  if (models.empty()) {
-    // The baseline D cannot stick and is not among the source's models; it runs where it is asked for, or alone.
-    if (text.empty() && names.size() > 1) std::erase(names, std::string(sim::CoulombViscous<>::name));
-    if (names.empty())
-      throw UsageError(fmt::format("{}: found no friction model that all axes have; expected one, such as {}",
-                                   machine.id, machine.axes.front().friction.use));
-    return names;
-  }
-  const auto known = [&](const std::string& name) { return std::ranges::find(models, name) != models.end(); };
-  if (!text.empty() && text != "all")
-    for (const auto& name : names)
-      require_known("--friction", name, fmt::format("a friction model that {} supports", experiment.name),
-                    {models.begin(), models.end()});
-  std::erase_if(names, [&](const std::string& name) { return !known(name); });
-  return names;
-}
 
 // "run.csv" and "24 m/min" make "run-24_m_per_min.csv".
 std::filesystem::path log_place(const std::filesystem::path& file, std::string run) {
@@ -93,39 +69,9 @@ class ExperimentLogs {
   std::vector<std::unique_ptr<PendingFile>> files_;
 };
 
-// Empty: all that the experiment knows.
-std::vector<std::string> equations_for(const Experiment& experiment, const std::string& text) {
-  if (text.empty()) return experiment.equations;
-  const auto& known = experiment.equations;
-  auto names = split_list(text);
-  for (const auto& name : names) require_known("--equations", name, "one or several of", known);
-  return names;
-}
-
-double jerk_of(const std::string& text) {
-  constexpr const char* expected = "a jerk above zero, such as \"40 m/s^3\"";
-  try {
-    const double jerk = machine::parse_quantity(text, "m/s^3");
-    if (jerk > 0.0) return jerk;
-  } catch (const machine::UnitError& error) {
-    throw UsageError(fmt::format("--jerk: found '{}' ({}); expected {}", text, error.what(), expected));
-  }
-  throw UsageError(fmt::format("--jerk: found '{}'; expected {}", text, expected));
-}
-
-ExperimentInput input_of(const Experiment& experiment, const ExperimentOptions& options) {
-  ExperimentInput input{options.machine.load(options.machine.machine, experiment.name), {}};
-  if (!needs_of(experiment.name).feed_drive) input.friction = models_for(experiment, options.friction, input.machine);
-  if (experiment.feeds != nullptr) input.feeds = feeds(options.feed);
-  for (const double feed : input.feeds)
-    if (!(feed > 0.0)) throw UsageError(fmt::format("--feed: found '{}'; expected feeds above zero", options.feed));
-  input.equations = equations_for(experiment, options.equations);
-  if (!options.jerk.empty()) input.jerk = jerk_of(options.jerk);
-  return input;
-}
-
 void run(const Experiment& experiment, const ExperimentOptions& options, const Invocation& invocation) {
-  auto input = input_of(experiment, options);
+  auto input = experiment_input(experiment, options.machine.load(options.machine.machine, experiment.name),
+                                {options.friction, options.feed, options.equations, options.jerk});
   ExperimentLogs logs(experiment, options, input);
   const auto result =
       during("simulating " + std::string(experiment.name), [&] { return run_experiment(experiment, input); });

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/report/experiment_report.hpp"
 

@@ -11,7 +11,7 @@
 #include "firmware/machine/file/units.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/experiment_result_output.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"

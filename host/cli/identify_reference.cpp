@@ -5,7 +5,7 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"

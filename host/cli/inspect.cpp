@@ -11,7 +11,7 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/cli/questions_json.hpp"
+#include "host/output/questions_json.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
 #include "host/log/stretches.hpp"

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
+#include "host/requests/run_options.hpp"
 #include "host/simulate/machine_needs.hpp"
-#include "sim/experiment/circle_result.hpp"
 
 namespace stiction::host {
 
@@ -32,18 +32,5 @@ struct MachineOptions {
 
 // Throws UsageError "FILE: found ...; expected ..." for a `machine`, of `file`, that lacks what the command `needs`.
 void require_needs(const machine::Machine& machine, const MachineNeeds& needs, const std::filesystem::path& file);
-
-// "a,b" or "a, b": the parts without blanks around them.
-std::vector<std::string> split_list(const std::string& text);
-
-// Names of friction models: empty: what the machine file uses, each axis its own (friction_choice.hpp); "all": all that
-// every axis has parameters for; or a list of them. Throws UsageError.
-std::vector<std::string> friction_models(const std::string& text, const machine::Machine& machine);
-
-// Feeds in m/s from "16 m/min" or a list of such quantities, the value of `option`. Throws UsageError.
-std::vector<double> feeds(const std::string& text, const std::string& option = "--feed");
-
-// "cw", "ccw" or "both"; "both" begins with counter-clockwise. Throws UsageError.
-std::vector<sim::Direction> directions(const std::string& text);
 
 }  // namespace stiction::host

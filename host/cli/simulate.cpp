@@ -3,10 +3,9 @@
 
 #include <memory>
 
-#include "firmware/machine/file/units.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
-#include "host/cli/circle_output.hpp"
+#include "host/output/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/frequency_response_command.hpp"
@@ -27,30 +26,9 @@ struct CircleOptions {
   bool json = false;
 };
 
-double radius_of(const std::string& text) {
-  try {
-    return machine::parse_quantity(text, "m");
-  } catch (const machine::UnitError& error) {
-    throw UsageError(fmt::format("--radius: found '{}' ({}); expected a length such as \"90 mm\"", text, error.what()));
-  }
-}
-
-CirclePlan plan_of(const CircleOptions& options) {
-  CirclePlan plan;
-  plan.machine = options.machine.load(options.machine.machine, "circle");
-  plan.signals = options.signals == "double" ? SignalKind::double_precision : SignalKind::fixed_point;
-  plan.friction = friction_models(options.friction, plan.machine);
-  plan.directions = directions(options.direction);
-  if (plan.machine.axes.size() == 1 && plan.directions.size() > 1)
-    throw UsageError(fmt::format("--direction: found '{}'; expected none, as the sine of one axis has no direction",
-                                 options.direction));
-  plan.radius = options.radius.empty() ? usual_radius(plan.machine) : radius_of(options.radius);
-  plan.feeds = options.feed.empty() ? std::vector{usual_feed(plan.machine, plan.radius)} : feeds(options.feed);
-  return plan;
-}
-
 void simulate_circle(const CircleOptions& options, const Invocation& invocation) {
-  const auto plan = plan_of(options);
+  const auto plan = circle_plan(options.machine.load(options.machine.machine, "circle"),
+                                {options.friction, options.feed, options.direction, options.radius, options.signals});
   auto places = options.places;
   places.command = invocation.command;
   const auto result = run_plan(plan, places);

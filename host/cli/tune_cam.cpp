@@ -16,7 +16,7 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/logs.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/report_origin.hpp"

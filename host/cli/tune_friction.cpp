@@ -1,20 +1,19 @@
 // `stiction tune-friction`: parameters of the friction compensation, and what it takes away.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include <algorithm>
 #include <memory>
 
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/report/experiment_report.hpp"
+#include "host/requests/tuning_options.hpp"
 #include "host/tune/machine_tuning.hpp"
 #include "host/tune/tuned_machine.hpp"
 #include "sim/machine_file.hpp"
@@ -34,35 +33,8 @@ struct TuneOptions {
   bool json = false;
 };
 
-// The axes to tune: the one named, else all that every log has channels of.
-std::vector<std::size_t> axes_to_tune(const std::string& name, const machine::Machine& machine,
-                                      const std::vector<Log>& logs) {
-  std::vector<std::size_t> chosen;
-  const auto names = axis_names(machine);
-  if (!name.empty()) require_known("--axis", name, "an axis of " + machine.id, names);
-  for (std::size_t k = 0; k < machine.axes.size(); ++k) {
-    const auto& axis = machine.axes[k].name;
-    const auto in = [&](const Log& log) {
-      return std::any_of(log.axes.begin(), log.axes.end(),
-                         [&](const auto& c) { return c.axis == axis || (c.axis.empty() && machine.axes.size() == 1); });
-    };
-    if (name.empty() ? std::all_of(logs.begin(), logs.end(), in) : axis == name) chosen.push_back(k);
-  }
-  if (!chosen.empty()) return chosen;
-  throw UsageError(fmt::format("--axis: found {}; expected an axis of {} that every log has channels of: {}",
-                               name.empty() ? "none" : "'" + name + "'", machine.id, fmt::join(names, ", ")));
-}
-
 TunedCompensations tune(const TuneOptions& options, const machine::Machine& machine, const std::vector<Log>& logs) {
-  MachineTuningSettings settings;
-  if (!options.shown.empty()) {
-    const auto shown = feeds(options.shown, "--show");
-    if (shown.size() != 1) throw UsageError(fmt::format("--show: found {} feeds; expected one", shown.size()));
-    settings.shown = shown.front();
-  }
-  if (!options.feed.empty()) settings.feeds = feeds(options.feed);
-  settings.axes = axes_to_tune(options.axis, machine, logs);
-  settings.pulse = !options.no_pulse;
+  auto settings = tuning_settings({options.axis, options.feed, options.shown, options.no_pulse}, machine, logs);
   auto progress = std::make_unique<Progress>("tuning", settings.axes.size());
   settings.tuned = [&](const std::string& axis) { progress->add(axis); };
   settings.begin_comparison = [&](std::size_t circles) {

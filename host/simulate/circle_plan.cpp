@@ -11,6 +11,7 @@
 #include "firmware/machine/configuration/double_signals.hpp"
 #include "firmware/machine/configuration/trace_writer.hpp"
 #include "host/simulate/friction_choice.hpp"
+#include "host/simulate/log_recorder.hpp"
 #include "sim/experiment/circle_measurement.hpp"
 #include "stiction/number/fixed_signals.hpp"
 
@@ -73,7 +74,12 @@ sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()
       } catch (...) {
         failures[i] = std::current_exception();
       }
-      if (done) done();
+      try {
+        if (done) done();
+      } catch (...) {
+        next = cases.size();
+        if (!failures[i]) failures[i] = std::current_exception();
+      }
     }
   };
   {
@@ -128,6 +134,15 @@ sim::CircleRun run_traced(const CircleCase& c, const std::filesystem::path& file
   writer.close();
   if (fault) std::rethrow_exception(fault);
   return *run;
+}
+
+Log run_logged(const CircleCase& c) {
+  LogRecorder recorder(c.machine);
+  if (c.signals == SignalKind::fixed_point)
+    run_circle<FixedSignals>(c.machine, c.settings, recorder.sink<FixedSignals>());
+  else
+    run_circle<machine::DoubleSignals>(c.machine, c.settings, recorder.sink<machine::DoubleSignals>());
+  return recorder.take();
 }
 
 }  // namespace stiction::host

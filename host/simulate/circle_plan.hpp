@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "host/log/log.hpp"
 #include "host/simulate/circle.hpp"
 
 namespace stiction::host {
@@ -38,12 +39,15 @@ class CaseFailed : public FaultTripped {
   CircleCase circle_case;
 };
 
-// Runs all cases; `done` is called after each, from any thread. Throws CaseFailed for the first case, in order, that
-// tripped a fault.
+// Runs all cases; `done` is called after each, from any thread. What it throws leaves this function, and no further case
+// begins. Throws CaseFailed for the first case, in order, that tripped a fault.
 sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()>& done = {});
 
 // Runs one case and writes its trace to `file` (CSV), also when a fault stops it: then FaultTripped is thrown after the
 // file is complete.
 sim::CircleRun run_traced(const CircleCase& circle_case, const std::filesystem::path& file);
+
+// Runs `circle_case` and returns every tick of it as a log in memory. Throws FaultTripped.
+Log run_logged(const CircleCase& circle_case);
 
 }  // namespace stiction::host

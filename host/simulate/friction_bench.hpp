@@ -7,17 +7,16 @@
 
 namespace stiction::host {
 
-class FrictionBench {
+// The mass, whose law of friction says with which velocity it leaves a step.
+class MassOnBench {
  public:
   static constexpr double step = 20e-6;  // s
 
-  // The axis' mass on the friction model that its machine file uses, at rest.
-  explicit FrictionBench(const machine::AxisModel& axis)
-      : mass_(axis.mass), friction_(sim::make_friction(axis.friction, {axis.mass, step})) {}
+  // `mass`: kg, at rest.
+  explicit MassOnBench(double mass) : mass_(mass) {}
 
-  // One step under `force` (N), the sum of all forces but friction.
-  void advance(double force) {
-    const double next = std::visit([&](auto& model) { return model.advance(velocity_, force); }, friction_);
+  // One step under `force` (N), the sum of all forces but friction, to the velocity `next` (m/s).
+  void move(double force, double next) {
     friction_force_ = force - mass_ * (next - velocity_) / step;
     position_ += 0.5 * step * (velocity_ + next);
     velocity_ = next;
@@ -31,8 +30,22 @@ class FrictionBench {
 
  private:
   double mass_;
-  sim::FrictionModel friction_;
   double time_ = 0.0, position_ = 0.0, velocity_ = 0.0, friction_force_ = 0.0;
+};
+
+class FrictionBench : public MassOnBench {
+ public:
+  // The axis' mass on the friction model that its machine file uses, at rest.
+  explicit FrictionBench(const machine::AxisModel& axis)
+      : MassOnBench(axis.mass), friction_(sim::make_friction(axis.friction, {axis.mass, step})) {}
+
+  // One step under `force` (N), the sum of all forces but friction.
+  void advance(double force) {
+    move(force, std::visit([&](auto& model) { return model.advance(velocity(), force); }, friction_));
+  }
+
+ private:
+  sim::FrictionModel friction_;
 };
 
 }  // namespace stiction::host

@@ -42,6 +42,10 @@ std::string content_of(const std::filesystem::path& file);
 // MachineFileError with the machines found.
 std::filesystem::path find_machine(const std::string& name_or_path);
 
+// Machines are looked for in `folder` too, after all others: of a library whose program is somebody else's. Before any
+// thread looks for a machine.
+void add_machine_folder(const std::filesystem::path& folder);
+
 // Names of the shipped machines, sorted.
 std::vector<std::string> shipped_machines();
 

@@ -13,6 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::vector<fs::path>& added_folders() {
+  static std::vector<fs::path> all;
+  return all;
+}
+
 std::vector<fs::path> folders() {
   std::vector<fs::path> found;
   if (const char* variable = std::getenv("STICTION_MACHINES")) {
@@ -23,10 +28,13 @@ std::vector<fs::path> folders() {
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) found.push_back(program.parent_path().parent_path() / "share" / "stiction" / "machines");
+  found.insert(found.end(), added_folders().begin(), added_folders().end());
   return found;
 }
 
 }  // namespace
+
+void add_machine_folder(const fs::path& folder) { added_folders().push_back(folder); }
 
 std::vector<std::string> shipped_machines() {
   std::set<std::string> names;

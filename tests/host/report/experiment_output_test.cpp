@@ -1,5 +1,5 @@
 // An experiment's figures on standard output: keys, schema, text.
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 
 #include <gtest/gtest.h>
 

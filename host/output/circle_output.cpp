@@ -1,4 +1,4 @@
-#include "host/cli/circle_output.hpp"
+#include "host/output/circle_output.hpp"
 
 #include <fmt/format.h>
 

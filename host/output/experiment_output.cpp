@@ -1,4 +1,4 @@
-#include "host/cli/experiment_output.hpp"
+#include "host/output/experiment_output.hpp"
 
 #include <fmt/format.h>
 

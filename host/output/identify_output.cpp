@@ -1,11 +1,11 @@
-#include "host/cli/identify_output.hpp"
+#include "host/output/identify_output.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <array>
 
-#include "host/cli/questions_json.hpp"
+#include "host/output/questions_json.hpp"
 #include "host/identify/own_identification.hpp"
 #include "host/log/own_units.hpp"
 

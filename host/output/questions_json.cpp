@@ -1,4 +1,4 @@
-#include "host/cli/questions_json.hpp"
+#include "host/output/questions_json.hpp"
 
 namespace stiction::host {
 namespace {
