@@ -5,9 +5,9 @@
 namespace stiction::host {
 namespace {
 
-constexpr std::array kept_signals{BatchSignal{"x", "m", Row::x},          BatchSignal{"v", "m/s", Row::v},
-                                  BatchSignal{"i", "A", Row::i},          BatchSignal{"i_set", "A", Row::i_set},
-                                  BatchSignal{"e", "m", Row::e},          BatchSignal{"e_held", "m", Row::e_held},
+constexpr std::array kept_signals{BatchSignal{"x", "m", Row::x},           BatchSignal{"v", "m/s", Row::v},
+                                  BatchSignal{"i", "A", Row::i},           BatchSignal{"i_set", "A", Row::i_set},
+                                  BatchSignal{"e", "m", Row::e},           BatchSignal{"e_held", "m", Row::e_held},
                                   BatchSignal{"F", "N", Row::motor_force}, BatchSignal{"position", "m", Row::position}};
 constexpr std::size_t ticks_between_reports = 4096;
 

@@ -10,12 +10,12 @@
 
 #include "firmware/machine/file/machine_file.hpp"
 #include "firmware/version/version.hpp"
-#include "stiction.h"
 #include "host/requests/library_folder.hpp"
 #include "host/requests/request.hpp"
 #include "host/requests/usage_error.hpp"
 #include "host/simulate/loaded_machine.hpp"
 #include "host/simulate/machine_needs.hpp"
+#include "stiction.h"
 
 struct stiction_machine {
   std::string file;
@@ -155,7 +155,7 @@ stiction_log* stiction_read_log(const char* file, const char* columns) {
   return guarded([&] {
     auto logs = host::logs_of({required(file, "file")}, columns == nullptr ? "" : columns);
     if (logs.size() != 1)
-      throw host::UsageError(fmt::format("{}: found a record of {} stretches; expected one", file, logs.size()));
+      throw host::UsageError(fmt::format("{}: found a record of {} segments; expected one", file, logs.size()));
     return new stiction_log(std::move(logs.front()));
   });
 }

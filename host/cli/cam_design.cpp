@@ -9,10 +9,10 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/output/experiment_output.hpp"
 #include "host/cli/experiment_result_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/report_origin.hpp"
+#include "host/output/experiment_output.hpp"
 
 namespace stiction::host {
 namespace {

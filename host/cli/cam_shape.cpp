@@ -11,9 +11,9 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/output/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/report_origin.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/report/experiment_report.hpp"
 #include "sim/cam/motion_file.hpp"
 

@@ -6,7 +6,6 @@
 
 #include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
-#include "host/output/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/compare_output.hpp"
 #include "host/cli/errors.hpp"
@@ -14,6 +13,7 @@
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/replay_command.hpp"
+#include "host/output/circle_output.hpp"
 #include "host/report/circle_table.hpp"
 #include "host/report/machine_sheet.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <optional>
 
-#include "host/output/circle_output.hpp"
 #include "host/log/own_units.hpp"
+#include "host/output/circle_output.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {

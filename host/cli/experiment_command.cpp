@@ -8,13 +8,13 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/output/experiment_output.hpp"
 #include "host/cli/experiment_result_output.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/log/csv_log.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/simulate/experiments.hpp"
 
 namespace stiction::host {

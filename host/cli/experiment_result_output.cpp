@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "host/output/experiment_output.hpp"
 #include "host/cli/output.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/report/experiment_report.hpp"
 
 namespace stiction::host {

@@ -7,17 +7,17 @@
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
-#include "host/output/identify_output.hpp"
 #include "host/cli/identify_reference.hpp"
 #include "host/cli/logs.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
-#include "host/requests/identify_request.hpp"
 #include "host/identify/identified_machine.hpp"
 #include "host/identify/own_identification.hpp"
+#include "host/output/identify_output.hpp"
 #include "host/report/identification_report.hpp"
+#include "host/requests/identify_request.hpp"
 #include "sim/machine_file.hpp"
 
 namespace stiction::host {
@@ -42,8 +42,8 @@ void run(const IdentifyCommandOptions& options, const Invocation& invocation) {
   const auto file = machine::find_machine(options.machine.machine);
   std::optional<Progress> progress;
   const auto identified = identify_request(
-      {options.logs, options.columns, options.axis, options.friction, options.amperes, options.fix, options.refine}, machine,
-      {read_logs, [&] { progress.emplace(options.refine ? "identifying and refining" : "identifying"); }});
+      {options.logs, options.columns, options.axis, options.friction, options.amperes, options.fix, options.refine},
+      machine, {read_logs, [&] { progress.emplace(options.refine ? "identifying and refining" : "identifying"); }});
   progress.reset();
   const auto& [axis, linear, logs] = identified;
   const auto origin = logs.empty() ? report_origin(options.machine.machine, options.logs)

@@ -5,11 +5,11 @@
 #include "firmware/machine/file/machine_file.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/errors.hpp"
-#include "host/output/experiment_output.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/report_origin.hpp"
 #include "host/identify/measured_machine_result.hpp"
+#include "host/output/experiment_output.hpp"
 #include "host/report/experiment_report.hpp"
 #include "host/simulate/expected_figures.hpp"
 

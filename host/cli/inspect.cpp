@@ -11,10 +11,10 @@
 #include "host/cli/errors.hpp"
 #include "host/cli/log_input.hpp"
 #include "host/cli/machine_options.hpp"
-#include "host/output/questions_json.hpp"
 #include "host/log/channel_name.hpp"
 #include "host/log/inspection.hpp"
 #include "host/log/stretches.hpp"
+#include "host/output/questions_json.hpp"
 #include "host/simulate/replay.hpp"
 
 namespace stiction::host {

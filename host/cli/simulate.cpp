@@ -5,12 +5,12 @@
 
 #include "host/cli/choices.hpp"
 #include "host/cli/circle_command.hpp"
-#include "host/output/circle_output.hpp"
 #include "host/cli/commands.hpp"
 #include "host/cli/errors.hpp"
 #include "host/cli/frequency_response_command.hpp"
 #include "host/cli/machine_options.hpp"
 #include "host/cli/output.hpp"
+#include "host/output/circle_output.hpp"
 
 namespace stiction::host {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "host/output/questions_json.hpp"
 #include "host/identify/own_identification.hpp"
 #include "host/log/own_units.hpp"
+#include "host/output/questions_json.hpp"
 
 namespace stiction::host {
 namespace {

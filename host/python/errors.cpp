@@ -30,8 +30,8 @@ PyObject* new_type(py::module_& module, const char* name, const char* text, PyOb
 void add_errors(py::module_& module) {
   error_type = new_type(module, "Error", "What stiction refuses or what fails in it.", PyExc_Exception);
   const auto both = py::make_tuple(py::handle(error_type), py::handle(PyExc_ValueError));
-  input_error_type = new_type(module, "InputError", "Input that cannot be used: what was found and what was expected.",
-                              both.ptr());
+  input_error_type =
+      new_type(module, "InputError", "Input that cannot be used: what was found and what was expected.", both.ptr());
   fault_type = new_type(module, "Fault", "A fault of the drive stopped a run.", error_type);
   py::register_exception_translator([](std::exception_ptr raised) {
     const auto bad_input = [](const std::exception& error) { PyErr_SetString(input_error_type, error.what()); };

@@ -34,9 +34,8 @@ py::list sheet_of(const MachineHandle& handle) {
 py::dict axes_of(const MachineHandle& handle) {
   py::dict axes;
   for (const auto& axis : handle.machine.axes)
-    axes[py::str(axis.name)] =
-        py::dict(py::arg("kind") = axis.coordinate.rotary() ? "rotary" : "linear", py::arg("mass") = axis.mass,
-                 py::arg("friction") = axis.friction.use);
+    axes[py::str(axis.name)] = py::dict(py::arg("kind") = axis.coordinate.rotary() ? "rotary" : "linear",
+                                        py::arg("mass") = axis.mass, py::arg("friction") = axis.friction.use);
   return axes;
 }
 
@@ -53,8 +52,7 @@ py::tuple answer(const std::string& command, const MachineHandle& handle, const 
       },
       progress);
   py::list kept;
-  for (auto& each : found.logs)
-    kept.append(py::make_tuple(each.run, std::make_shared<host::Log>(std::move(each.log))));
+  for (auto& each : found.logs) kept.append(py::make_tuple(each.run, std::make_shared<host::Log>(std::move(each.log))));
   return py::make_tuple(document, kept);
 }
 
@@ -67,8 +65,7 @@ void add_requests(py::module_& module) {
       .def_readonly("set", &MachineHandle::set)
       .def_property_readonly("id", [](const MachineHandle& handle) { return handle.machine.id; })
       .def_property_readonly("name", [](const MachineHandle& handle) { return handle.machine.name; })
-      .def_property_readonly("period",
-                             [](const MachineHandle& handle) { return handle.machine.timing.fast_period; })
+      .def_property_readonly("period", [](const MachineHandle& handle) { return handle.machine.timing.fast_period; })
       .def_property_readonly("axes", &axes_of)
       .def_property_readonly("sheet", &sheet_of);
   module.def("answer", &answer);

@@ -11,7 +11,7 @@
 namespace stiction::host {
 
 std::vector<std::size_t> axes_to_diagnose(const std::string& name, const machine::Machine& machine,
-                                     const std::vector<Log>& logs) {
+                                          const std::vector<Log>& logs) {
   const auto names = axis_names(machine);
   if (!name.empty()) {
     require_known("--axis", name, "an axis of " + machine.id, names);

@@ -35,9 +35,8 @@ Identified from_table(const IdentifyRequest& request, const std::string& text, c
   if (axis.coordinate.rotary())
     throw UsageError(
         fmt::format("{}: found a table of steady states and the rotary axis {}; expected logs", file, axis.name));
-  return {&axis,
-          identify_table(parse_steady_table(text, file), axis, parse_amperes(request.amperes), FitSettings{}),
-          {}};
+  return {
+      &axis, identify_table(parse_steady_table(text, file), axis, parse_amperes(request.amperes), FitSettings{}), {}};
 }
 
 }  // namespace

@@ -86,16 +86,16 @@ Answer circle(const Request& request, const RequestProgress& progress) {
 
 const Experiment& experiment_of(const std::string& command) {
   const auto table = experiments();
-  return *std::ranges::find_if(
-      table, [&](const Experiment& each) { return command == std::string("simulate ") + each.name; });
+  return *std::ranges::find_if(table,
+                               [&](const Experiment& each) { return command == std::string("simulate ") + each.name; });
 }
 
 Answer experiment(const Request& request, const RequestProgress& progress) {
   const auto& which = experiment_of(request.command);
   const Texts texts(request);
-  auto input = experiment_input(
-      which, machine_of(request, which.name, needs_of(which.name)),
-      {texts.text("friction"), texts.text("feed"), texts.text("equations"), texts.text("jerk")});
+  auto input =
+      experiment_input(which, machine_of(request, which.name, needs_of(which.name)),
+                       {texts.text("friction"), texts.text("feed"), texts.text("equations"), texts.text("jerk")});
   if (request.keep_logs && !which.keeps_logs)
     throw UsageError(fmt::format("{}: found that logs are wanted; expected none, as it keeps none", request.command));
   Answer answer;
@@ -155,8 +155,8 @@ Answer tuning(const Request& request, const RequestProgress& progress) {
   const Texts texts(request);
   const auto machine = machine_of(request, "", needs_of(""));
   const auto logs = logs_of(request.logs, texts.text("columns"));
-  auto settings = tuning_settings(
-      {texts.text("axis"), texts.text("feed"), texts.text("show"), texts.flag("no-pulse")}, machine, logs);
+  auto settings = tuning_settings({texts.text("axis"), texts.text("feed"), texts.text("show"), texts.flag("no-pulse")},
+                                  machine, logs);
   if (progress) {
     settings.tuned = [&](const std::string& axis) { progress("tuned " + axis); };
     settings.begin_comparison = [&](std::size_t circles) { progress(fmt::format("{} circles follow", circles)); };

@@ -14,12 +14,12 @@
 namespace stiction::host {
 
 struct Request {
-  std::string command;                                      // "simulate circle"
-  std::string machine;                                      // shipped, by name, or a path
-  std::vector<std::string> set{};                           // "KEY=VALUE", as --set takes them
-  std::vector<std::string> logs{};                          // files, of a command that reads logs
+  std::string command;                                         // "simulate circle"
+  std::string machine;                                         // shipped, by name, or a path
+  std::vector<std::string> set{};                              // "KEY=VALUE", as --set takes them
+  std::vector<std::string> logs{};                             // files, of a command that reads logs
   std::vector<std::pair<std::string, std::string>> options{};  // {"feed", "16 m/min"}; of a flag {"refine", "true"}
-  bool keep_logs = false;                                   // of simulations: every run as a log in memory
+  bool keep_logs = false;                                      // of simulations: every run as a log in memory
 };
 
 struct KeptLog {
@@ -55,8 +55,8 @@ struct LogColumn {
 // Of time and every channel that `log` has, which must outlive them.
 std::vector<LogColumn> columns_of(const Log& log);
 
-// The logs of `files`, one a stretch of a record with gaps. `columns`: names and units of a table without header; empty:
-// it has one. Throws LogError.
+// The logs of `files`, one a stretch of a record with gaps. `columns`: names and units of a table without header;
+// empty: it has one. Throws LogError.
 std::vector<Log> logs_of(const std::vector<std::string>& files, const std::string& columns = {});
 
 }  // namespace stiction::host

@@ -161,8 +161,8 @@ CirclePlan circle_plan(machine::Machine machine, const CircleTexts& texts) {
   plan.friction = friction_models(texts.friction, plan.machine);
   plan.directions = directions(texts.direction);
   if (plan.machine.axes.size() == 1 && plan.directions.size() > 1)
-    throw UsageError(
-        fmt::format("--direction: found '{}'; expected none, as the sine of one axis has no direction", texts.direction));
+    throw UsageError(fmt::format("--direction: found '{}'; expected none, as the sine of one axis has no direction",
+                                 texts.direction));
   plan.radius = texts.radius.empty() ? usual_radius(plan.machine) : radius_of(texts.radius);
   plan.feeds = texts.feed.empty() ? std::vector{usual_feed(plan.machine, plan.radius)} : feeds(texts.feed);
   return plan;

@@ -39,8 +39,8 @@ class CaseFailed : public FaultTripped {
   CircleCase circle_case;
 };
 
-// Runs all cases; `done` is called after each, from any thread. What it throws leaves this function, and no further case
-// begins. Throws CaseFailed for the first case, in order, that tripped a fault.
+// Runs all cases; `done` is called after each, from any thread. What it throws leaves this function, and no further
+// case begins. Throws CaseFailed for the first case, in order, that tripped a fault.
 sim::CircleResult run_circles(const CirclePlan& plan, const std::function<void()>& done = {});
 
 // Runs one case and writes its trace to `file` (CSV), also when a fault stops it: then FaultTripped is thrown after the

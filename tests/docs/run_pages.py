@@ -24,7 +24,7 @@ import pages
 
 WITH_RECIPES = "docs/extending.md"
 # Pages that a different test follows, because their examples are more than commands.
-OTHERS = {"docs/formats.md": "tests/schemas/formats_test.py"}
+OTHERS = {"docs/formats.md": "tests/schemas/formats_test.py", "docs/python.md": "tests/host/python/page_test.py"}
 BUILT = """#!/bin/sh
 echo "run_pages: $0 $*: the programmes are built already"
 """

@@ -15,7 +15,7 @@ import phrases
 import tables
 
 CHECKS = ("phrases", "citations", "parameters", "tables")
-ROOMS = ("firmware", "hal", "host", "sim", "tests", "toolchain", "docs", "examples")
+ROOMS = ("firmware", "hal", "host", "sim", "tests", "toolchain", "docs", "examples", "studies")
 
 # Where each check looks: paths from the root, files or folders.
 FOLDERS = {

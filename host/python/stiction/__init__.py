@@ -15,7 +15,7 @@ from ._core import BENCH_STEP, Error, Fault, InputError, Machine
 
 __version__ = _core.version()
 __all__ = ["BENCH_STEP", "Error", "Fault", "InputError", "Log", "Machine", "Result", "batch", "bench", "commands",
-           "diagnose", "identify", "instruction_sets", "machine", "options", "read_log", "read_stretches",
+           "diagnose", "identify", "instruction_sets", "machine", "options", "read_log", "read_segments",
            "shipped_machines", "simulate", "tune_friction"]
 
 shipped_machines = _core.shipped_machines
@@ -172,18 +172,18 @@ def options(command):
     return [name.replace("-", "_") for name in _core.options(command)]
 
 
-def read_stretches(path, columns=""):
-    """All stretches of a record, which is several logs where it has gaps. columns: of a table without a header."""
+def read_segments(path, columns=""):
+    """All segments of a record, which is several logs where it has gaps. columns: of a table without a header."""
     return [Log(log) for log in _core.read_log(_os.fspath(path), columns)]
 
 
 def read_log(path, columns=""):
-    """The log of a file in any of the formats of docs/formats.md; a record with gaps is refused: see read_stretches."""
-    stretches = read_stretches(path, columns)
-    if len(stretches) != 1:
-        raise InputError(f"{_os.fspath(path)}: found a record of {len(stretches)} stretches; expected one, or "
-                         "read_stretches()")
-    return stretches[0]
+    """The log of a file in any of the formats of docs/formats.md; a record with gaps is refused: see read_segments."""
+    segments = read_segments(path, columns)
+    if len(segments) != 1:
+        raise InputError(f"{_os.fspath(path)}: found a record of {len(segments)} segments; expected one, or "
+                         "read_segments()")
+    return segments[0]
 
 
 def _set_points(name, values, period, size, of=None):

@@ -1,0 +1,31 @@
+"""The example for Octave, where Octave is installed (status 77: it is not).
+
+usage: octave_test.py EXAMPLE_FOLDER HEADER_FOLDER LIBRARY_FOLDER STICTION
+"""
+
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+examples, headers, libraries, stiction = sys.argv[1:]
+if not shutil.which("mkoctfile") or not shutil.which("octave-cli"):
+    print("octave is not installed (Debian: octave-dev)")
+    sys.exit(77)
+with tempfile.TemporaryDirectory(prefix="stiction-octave-") as folder:
+    for name in ("stiction_run_mex.c", "circle.m"):
+        shutil.copy(Path(examples) / name, folder)
+    subprocess.run(["mkoctfile", "--mex", "stiction_run_mex.c", f"-I{headers}", f"-L{libraries}", "-lstiction",
+                    f"-Wl,-rpath,{libraries}"], cwd=folder, check=True)
+    found = subprocess.run(["octave-cli", "--no-gui", "circle.m"], cwd=folder, check=True, capture_output=True,
+                           text=True).stdout
+    printed = json.loads(subprocess.run([stiction, "simulate", "circle", "--machine", "mcfv5050ln", "--friction", "lugre",
+                                         "--feed", "16 m/min", "--json"], check=True, capture_output=True,
+                                        text=True).stdout)
+    peak = printed["rows"][0]["peak_error_um"]
+    if f"peak error of X: {peak:.2f} um" not in found or not re.search(r"following error of X: \d\.\d+ mm", found):
+        sys.exit(f"found {found!r}; expected the peak error of the command, {peak:.2f} um")
+print(found.strip())
