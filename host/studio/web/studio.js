@@ -210,15 +210,15 @@ function select(k) {
 }
 
 const lawOf = segment => laws.find(law => law.name === segment.law);
+const rests = segment => segment.law === 'linear' && segment.stroke === 0;
 const readable = name => name.replaceAll('_', ' ');
 
 function drawSegments() {
   const u = shownUnits();
   at('segments').tBodies[0].replaceChildren(...state.segments.map((segment, k) => {
-    const rests = segment.law === 'linear' && segment.stroke === 0;
     const choose = element('button', { type: 'button', class: 'plain', 'aria-pressed': String(k === selected), 'data-segment': k }, String(k + 1));
-    choose.setAttribute('aria-label', `Segment ${k + 1}, ${rests ? 'rest' : readable(segment.law)}`);
-    const row = element('tr', { class: k === selected ? 'selected' : null }, element('td', {}, choose), element('td', {}, rests ? 'rest' : readable(segment.law)),
+    choose.setAttribute('aria-label', `Segment ${k + 1}, ${rests(segment) ? 'rest' : readable(segment.law)}`);
+    const row = element('tr', { class: k === selected ? 'selected' : null }, element('td', {}, choose), element('td', {}, rests(segment) ? 'rest' : readable(segment.law)),
       element('td', { class: 'number' }, `${withUnit(endOf(k) * u.master, u.masterUnit)}`), element('td', { class: 'number' }, `${withUnit(positionOf(k) * u.slave, u.slaveUnit)}`));
     row.addEventListener('click', () => { select(k); refresh(); at('segments').querySelector(`[data-segment="${k}"]`).focus(); });
     return row;
@@ -253,8 +253,9 @@ function drawSelected() {
   const k = selected, segment = state.segments[k], law = lawOf(segment), u = shownUnits(), last = k === state.segments.length - 1;
   const focused = document.activeElement?.dataset?.field;
   at('selected-name').textContent = `Segment ${k + 1} of ${state.segments.length}`;
-  at('law').replaceChildren(law ? thumbnail(laws.indexOf(law)) : '', element('span', {}, law ? readable(law.name) : 'table of points'), element('span', { class: 'quiet' }, law ? law.task : ''));
-  at('law').setAttribute('aria-label', `Law: ${law ? readable(law.name) : 'table of points'}. Choose a law`);
+  const name = rests(segment) ? 'rest' : law ? readable(law.name) : 'table of points';
+  at('law').replaceChildren(law ? thumbnail(laws.indexOf(law)) : '', element('span', {}, name), element('span', { class: 'quiet' }, law && !rests(segment) ? law.task : ''));
+  at('law').setAttribute('aria-label', `Law: ${name}. Choose a law`);
   const fields = [];
   if (!last) fields.push(field('Ends at', endOf(k) * u.master, u.masterUnit, value => value !== null && step('drag', k, { x: value / u.master, y: positionOf(k) })));
   else fields.push(field('Cycle', state.cycle * u.master, u.masterUnit, value => value !== null && step('cycle', 0, { x: value / u.master })));

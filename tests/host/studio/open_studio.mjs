@@ -54,7 +54,9 @@ async function checkDrag(page) {
   expect(dragged.segments[0].stroke < 0.99 * stroke, 'a handle that is dragged down does not lower the position');
   expect(dragged.undo === steps + 1, `a drag is ${dragged.undo - steps} steps to undo`);
   expect(dragged.segments.length === 2 && dragged.segments[1].stroke === 0, 'a drag of the level ends the rest behind it');
-  console.log(`drag: curves after ${(await page.evaluate(() => times.curves)).toFixed(1)} ms`);
+  // What others do on the machine adds to most drawings, and to the quickest least.
+  const drawn = await page.evaluate(() => Array.from({ length: 20 }, () => { refresh(); return times.curves; }).sort((a, b) => a - b));
+  console.log(`drag: curves after ${drawn[0].toFixed(1)} ms at the quickest, ${drawn[10].toFixed(1)} ms in the median of 20 drawings`);
   const moved = await motionText(page);
   expect(moved !== before, 'a drag does not change the motion');
   await page.keyboard.press('Control+z');
