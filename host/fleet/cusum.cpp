@@ -19,7 +19,7 @@ double Cusum::add(double deviation, std::size_t index) {
 
 double cusum_false_alarms(double reference, double threshold) {
   // State 0 is the sum 0, state i the sums around i w, with the threshold between the last state and the alarm.
-  constexpr std::size_t states = 400;
+  constexpr std::size_t states = 200;
   const double w = threshold / (static_cast<double>(states) - 0.5);
   // Steps from state i to j depend on j - i alone, except into 0.
   std::vector<double> step(2 * states);
@@ -51,20 +51,11 @@ double cusum_false_alarms(double reference, double threshold) {
 
 double cusum_threshold(double reference, double probability) {
   double low = 0.01, high = 40.0;
-  while (high - low > 1e-6) {
+  while (high - low > 1e-4) {
     const double middle = 0.5 * (low + high);
     (cusum_false_alarms(reference, middle) > probability ? low : high) = middle;
   }
   return high;
-}
-
-double normal_quantile(double probability) {
-  double low = -38.0, high = 38.0;
-  for (int k = 0; k < 100 && high - low > 1e-12; ++k) {
-    const double middle = 0.5 * (low + high);
-    (above(middle) > probability ? low : high) = middle;
-  }
-  return 0.5 * (low + high);
 }
 
 }  // namespace stiction::host

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "host/diagnose/statistics/fisher.hpp"
+#include "host/sweep/samples.hpp"
 
 namespace stiction::host {
 namespace {
@@ -151,7 +152,7 @@ std::vector<double> deviations_of(const Course& course, const std::vector<double
       const double error = std::sqrt(scatter.variance * (1.0 / weights[k] + 1.0 / before.weight));
       if (scatter.freedom >= 1.0 && error > 0.0) {
         const double t = (course.values[k] - before.mean) / error;
-        const double tail = std::max(0.5 * student_tails(t, scatter.freedom), 1e-300);
+        const double tail = std::max(0.5 * student_tails(t, scatter.freedom), 1e-100);
         deviation = std::copysign(normal_quantile(std::min(tail, 0.5)), t);
       }
     }
