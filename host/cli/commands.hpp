@@ -50,6 +50,8 @@ void add_cam_step(CLI::App& cam, const Invocation& invocation);
 void add_completion(CLI::App& program);
 // Many runs over a grid or a sample.
 void add_sweep(CLI::App& program, const Invocation& invocation);
+// Records of many axes over months.
+void add_fleet(CLI::App& program, const Invocation& invocation);
 void add_convert(CLI::App& program);
 void add_inspect(CLI::App& program);
 

@@ -85,6 +85,7 @@ int run(int argc, char** argv) {
   add_tune_cam(program, invocation);
   add_cam(program, invocation);
   add_sweep(program, invocation);
+  add_fleet(program, invocation);
   add_convert(program);
   add_inspect(program);
   add_completion(program);

@@ -33,6 +33,8 @@ std::string_view experiment_js();
 std::string_view identification_js();
 std::string_view step_cam_html();
 std::string_view step_cam_js();
+std::string_view fleet_html();
+std::string_view fleet_js();
 std::string_view plotly_js();
 std::string_view plotly_license();
 

@@ -25,6 +25,13 @@ feed = "2 m/min"
 "axis.X.position_controller.gain" = { values = ["150 1/s", "160 1/s"], design = true }
 """
 
+FLEET = """axis,machine,date,log
+table,emps,2026-01-01,lap.csv
+table,emps,2026-02-01,gain/speeds.csv
+table,emps,2026-03-01,gain/other-circle.csv
+table,emps,2026-04-01,missing.csv
+"""
+
 # In order: later ones read what earlier ones wrote. other.toml is the shipped cross table under a different name.
 COMMANDS = """
 simulate circle --machine mcfv5050ln --friction lugre --feed '8 m/min, 16 m/min' --direction both --json
@@ -71,6 +78,7 @@ simulate cam --machine cam-stand --cam stand.toml --speed '130 rpm' --model 'cas
 simulate cam --machine cam-stand --verification --json
 cam shape stand.toml --machine cam-stand --speed '130 rpm' --out shapes --json
 sweep sweep.toml --out swept --json
+fleet fleet.csv --out fleet --json
 tune-cam --machine cam-stand --cam stand.toml --speed '130 rpm' --out tuned-cam --json
 cam laws --json
 cam check indexing.toml --json
@@ -114,6 +122,7 @@ def prepare(folder):
     shear = SOURCE / "examples/cams/flying_shear.toml"
     (folder / "shear.toml").write_text(shear.read_text(encoding="utf-8"), encoding="utf-8")
     (folder / "sweep.toml").write_text(SWEEP, encoding="utf-8")
+    (folder / "fleet.csv").write_text(FLEET, encoding="utf-8")
     (folder / "steady.csv").write_text(STEADY, encoding="utf-8")
     made = SOURCE / "tests/fuzz/seeds/response_file/made.xml"
     (folder / "test.xml").write_text(made.read_text(encoding="utf-8"), encoding="utf-8")

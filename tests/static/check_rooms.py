@@ -251,6 +251,15 @@ ROOMS = {
         "firmware/machine/*": "on a machine as its file describes it",
         f"{FIRMWARE}/number": "in the drive's formats or in double ones",
     },
+    "host/fleet": {
+        "host/sweep": "shares a folder and a table's format with the sweeps,",
+        "host/identify": "identifies each record",
+        "host/diagnose": "diagnoses those that alarm",
+        "host/diagnose/*": "with the same statistics",
+        "host/log": "from their logs",
+        "sim/*": "of axes of all laws",
+        "firmware/machine/*": "as their machine files describe them",
+    },
     # A programme of its own, which needs OpenCASCADE; it reads what `stiction cam step` has written.
     "host/solid": {},
     "host/plant": {
@@ -267,6 +276,7 @@ ROOMS = {
         "host/diagnose/*": "causes,",
         "host/identify": "models,",
         "host/response": "frequency responses",
+        "host/fleet": "fleets",
         "host/simulate": "and results of runs become pages",
         "host/tune": "parameters of the friction compensation too,",
         "host/log": "with the signals behind them",
@@ -339,6 +349,7 @@ ROOMS = {
         "host/tune": "tunes the drive",
         "host/sheet": "makes machine files",
         "host/sweep": "runs all of it many times",
+        "host/fleet": "follows many axes over months",
         "host/cam": "makes profiles",
         "host/cam/step": "and step cams",
         "host/report": "and shows the results",
