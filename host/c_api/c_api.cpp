@@ -1,6 +1,7 @@
 // The C API over the requests that Python has too.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <stiction.h>
 
 #include <memory>
 #include <stdexcept>
@@ -15,7 +16,6 @@
 #include "host/requests/usage_error.hpp"
 #include "host/simulate/loaded_machine.hpp"
 #include "host/simulate/machine_needs.hpp"
-#include "stiction.h"
 
 struct stiction_machine {
   std::string file;

@@ -32,7 +32,7 @@ void refuse_decimal_comma(const std::string& text, const std::string& option) {
 std::vector<std::string> split_list(const std::string& text) {
   constexpr const char* blanks = " \t\n\r\v\f";
   std::vector<std::string> parts;
-  for (std::size_t from = 0; from <= text.size();) {
+  for (std::size_t from = 0; from == 0 || from < text.size();) {
     const auto end = std::min(text.find(',', from), text.size());
     const auto part = text.substr(from, end - from);
     const auto first = part.find_first_not_of(blanks);

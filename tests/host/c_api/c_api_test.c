@@ -2,9 +2,8 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <stiction.h>
 #include <string.h>
-
-#include "stiction.h"
 
 static int failures = 0;
 
@@ -74,7 +73,7 @@ static void refuses_bad_input(const stiction_machine* machine) {
 
 int main(int argc, char** argv) {
   const char* const set[] = {"axis.X.mass=240 kg"};
-  const char* const circle[] = {"friction=lugre", "feed=16 m/min"};
+  const char* const circle[] = {"friction=lugre", "feed=48 m/min"};
   const char* const axis[] = {"axis=X"};
   char path[4096];
   const char* const logs[] = {path};

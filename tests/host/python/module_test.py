@@ -33,7 +33,7 @@ class Commands(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="stiction-python-")
         cls.log = Path(cls.folder.name) / "circle.csv"
-        kept = stiction.simulate("circle", CROSS_TABLE, friction="lugre", feed="16 m/min", logs=True)
+        kept = stiction.simulate("circle", CROSS_TABLE, friction="lugre", feed="48 m/min", logs=True)
         cls.kept = kept.logs[0]
         cls.kept.write(cls.log)
 
@@ -203,12 +203,17 @@ class Errors(unittest.TestCase):
             stiction.simulate("circle", CROSS_TABLE, friction="lugre", progress=refuse)
 
     def test_ctrl_c_ends_a_batch(self):
-        # Of 10^7 ticks, minutes of work, few are done.
-        killer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
-        killer.start()
+        reports = []
+
+        def interrupt_once(words):
+            if not reports:
+                threading.Timer(0.0, os.kill, (os.getpid(), signal.SIGINT)).start()
+            reports.append(words)
+        ticks = 4_000_000  # most of them are never done
         with self.assertRaises(KeyboardInterrupt):
-            stiction.batch([(CROSS_TABLE, "X")], np.zeros(10_000_000), every=1000)
-        killer.join()
+            stiction.batch([(CROSS_TABLE, "X")], np.zeros(ticks), np.zeros(ticks), np.zeros(ticks), every=1000,
+                           progress=interrupt_once)
+        self.assertLess(len(reports), ticks // 4096)
 
 
 class Stubs(unittest.TestCase):
