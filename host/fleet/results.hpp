@@ -21,7 +21,7 @@ void write_fleet_npz(const FleetResult& result, const std::filesystem::path& pla
 // "2 of 50 axes have alarms; the first: axis 7, Coulomb friction, up by 6.1 % since 2025-11-01 (alarm on 2026-01-01)."
 std::string fleet_sentence(const FleetResult& result);
 
-// One sentence on an alarm of the parameter `cause` of the axis `axis` (index in FleetTrends::axes).
+// One sentence of `result` on an alarm of the parameter `cause` of the axis `axis` (index in FleetTrends::axes).
 std::string alarm_sentence(const FleetResult& result, std::size_t axis, FleetCause cause);
 
 }  // namespace stiction::host

@@ -59,9 +59,9 @@ class FleetFolder {
   std::vector<FolderLock> lock_;  // one
 };
 
-// Judges what is missing of `list` in `folder`. Throws machine::MachineFileError for a machine file that cannot be used
-// and an axis that it does not have; std::runtime_error when a result cannot be kept. A record that cannot be judged
-// has a message in its estimate.
+// Judges what is missing of `list` in `folder` as `settings` say. Throws machine::MachineFileError for a machine file
+// that cannot be used and an axis that it does not have; std::runtime_error when a result cannot be kept. A record that
+// cannot be judged has a message in its estimate.
 FleetResult run_fleet(FleetList list, const FleetFolder& folder, const FleetSettings& settings);
 
 }  // namespace stiction::host
