@@ -133,10 +133,10 @@ std::uint64_t whole_number_of(const std::string& option, const std::string& text
 Answer diagnosis(const Request& request, const RequestProgress& progress) {
   const Texts texts(request);
   DiagnoseInput input;
+  input.seed = whole_number_of("seed", texts.text("seed", "1"));
   input.machine = machine_of(request, "", needs_of("diagnose"));
   input.logs = logs_of(request.logs, texts.text("columns"));
   input.held_out = logs_of(texts.all("holdout"), texts.text("columns"));
-  input.seed = whole_number_of("seed", texts.text("seed", "1"));
   auto all = input.logs;
   all.insert(all.end(), input.held_out.begin(), input.held_out.end());
   std::vector<Verdict> verdicts;

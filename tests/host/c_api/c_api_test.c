@@ -56,7 +56,7 @@ static void refuses_bad_input(const stiction_machine* machine) {
   const char* const no_value[] = {"feed"};
   const char* const set[] = {"axis.X.mass=-3 kg"};
   stiction_options options = {0};
-  expect_error(stiction_open_machine("mcfv5050l", NULL, 0), "did you mean 'mcfv5050ln'?");
+  expect_error(stiction_open_machine("mcfv5050l", NULL, 0), "did you mean \"mcfv5050ln\"?");
   expect_error(stiction_open_machine(NULL, NULL, 0), "name: found NULL; expected a text");
   expect_error(stiction_open_machine("mcfv5050ln", set, 1), "axis.X.mass");
   expect_error(stiction_open_machine("mcfv5050ln", NULL, 1), "set: found NULL; expected 1 texts");

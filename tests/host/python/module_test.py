@@ -100,13 +100,13 @@ class Commands(unittest.TestCase):
 
 class Batches(unittest.TestCase):
     def test_axis_of_a_batch_is_the_axis_alone(self):
-        t = np.arange(1600) * stiction.machine(CROSS_TABLE).period
+        t = np.arange(3200) * stiction.machine(CROSS_TABLE).period
         x_set = 1e-3 * np.sin(2 * np.pi * 5.0 * t) ** 3
         member = (stiction.machine(CROSS_TABLE), "X")
         other = (stiction.machine(CROSS_TABLE, set="axis.X.mass=300 kg"), "X")
         alone = stiction.batch([member], x_set)
         many = stiction.batch([member, other] * 8, x_set, every=4)
-        self.assertEqual(many["x"].shape, (400, 16))
+        self.assertEqual(many["x"].shape, (800, 16))
         self.assertTrue(np.array_equal(many["x"][:, 0], alone["x"][::4, 0]))
         self.assertFalse(np.array_equal(many["x"][:, 0], many["x"][:, 1]))
         self.assertFalse(many["fault"].any())
@@ -170,7 +170,7 @@ class Errors(unittest.TestCase):
                 ("--signals: found 'half'", lambda: stiction.simulate("circle", CROSS_TABLE, signals="half")),
                 ("axis.X.mass", lambda: stiction.machine(CROSS_TABLE, set="axis.X.mass=-3 kg")),
                 ("nowhere.toml", lambda: stiction.machine("nowhere.toml")),
-                ("did you mean 'mcfv5050ln'?", lambda: stiction.machine("mcfv5050l")),
+                ('did you mean "mcfv5050ln"?', lambda: stiction.machine("mcfv5050l")),
                 ("found no log; expected at least one", lambda: stiction.diagnose([], CROSS_TABLE)),
                 ("--seed: found '-1'; expected a whole number", lambda: stiction.diagnose(
                     __file__, CROSS_TABLE, axis="X", seed=-1)),
