@@ -1,7 +1,10 @@
 // The C API over the requests that Python has too.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+// The functions of the header are all that a library shows.
+#pragma GCC visibility push(default)
 #include <stiction.h>
+#pragma GCC visibility pop
 
 #include <memory>
 #include <stdexcept>

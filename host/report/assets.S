@@ -7,7 +7,9 @@
 
 .macro asset name, file
   .global stiction_asset_\name
+  .hidden stiction_asset_\name
   .global stiction_asset_\name\()_end
+  .hidden stiction_asset_\name\()_end
 stiction_asset_\name:
   .incbin "\file"
 stiction_asset_\name\()_end:

@@ -73,7 +73,7 @@ static void refuses_bad_input(const stiction_machine* machine) {
 
 int main(int argc, char** argv) {
   const char* const set[] = {"axis.X.mass=240 kg"};
-  const char* const circle[] = {"friction=lugre", "feed=48 m/min"};
+  const char* const circle[] = {"friction=lugre", "feed=16 m/min"};
   const char* const axis[] = {"axis=X"};
   char path[4096];
   const char* const logs[] = {path};

@@ -33,7 +33,7 @@ class Commands(unittest.TestCase):
     def setUpClass(cls):
         cls.folder = tempfile.TemporaryDirectory(prefix="stiction-python-")
         cls.log = Path(cls.folder.name) / "circle.csv"
-        kept = stiction.simulate("circle", CROSS_TABLE, friction="lugre", feed="48 m/min", logs=True)
+        kept = stiction.simulate("circle", CROSS_TABLE, friction="lugre", feed="16 m/min", logs=True)
         cls.kept = kept.logs[0]
         cls.kept.write(cls.log)
 
