@@ -14,12 +14,11 @@ import stiction
 from picture import picture
 
 MACHINE, AXIS = "mcfv5050ln", "X"
-COULOMB = 90.0  # N, of its file
 
 
 def peak_errors(ratio, feeds):
     """The peak error of the axis, um, at each feed."""
-    machine = stiction.machine(MACHINE, set=f"axis.{AXIS}.friction.lugre.static={ratio * COULOMB} N")
+    machine = stiction.machine(MACHINE, set=f"axis.{AXIS}.friction.lugre.static_ratio={ratio}")
     rows = stiction.simulate("circle", machine, friction="lugre", feed=feeds)["rows"]
     return [row["peak_error_um"] for row in rows if row["axis"] == AXIS]
 
@@ -34,7 +33,7 @@ def main():
     feeds = [each.strip() for each in options.feeds.split(",")]
     found = [peak_errors(ratio, feeds) for ratio in ratios]
 
-    lines = [f"Peak error of axis {AXIS} of {MACHINE} on a circle, um, LuGre with a Coulomb friction of {COULOMB:g} N", "",
+    lines = [f"Peak error of axis {AXIS} of {MACHINE} on a circle, um, LuGre", "",
              "static/Coulomb  " + "  ".join(f"{feed:>12}" for feed in feeds)]
     for ratio, errors in zip(ratios, found):
         lines.append(f"{ratio:14.2f}  " + "  ".join(f"{error:12.3f}" for error in errors))
