@@ -107,7 +107,7 @@ int main(int count, char** arguments) {
   fmt::print(
       "false alarms: {} in {:.0f} axis-years (mass {}, constant force {}, Coulomb {}, viscous {}); {:g} stated\n",
       alarms[0] + alarms[1] + alarms[2] + alarms[3], done, alarms[0], alarms[1], alarms[2], alarms[3], rate * done);
-  std::array<std::size_t, months + 1> found{};  // by records of the growth until the alarm; the last: never
+  std::vector<std::size_t> found(months + 1);  // by records of the growth until the alarm; the last: never
   std::size_t early = 0, all = 0;
   for (double years_done = 0.0; years_done < wanted; years_done += years)
     for (const auto& axis : trends_of(draw.fleet(growing), rate).axes) {

@@ -39,7 +39,8 @@ BY_CLASS = {
 OTHER_MEANINGS = {("firmware/machine/file/feed_drive_parameters.hpp", "constant_force"): "a key of the feed drive's cutting force",
                   ("firmware/machine/file/parameters.hpp", "backlash"): "a key of the transmission",
                   ("firmware/machine/file/axis_rules.cpp", "backlash"): "a key of the transmission",
-                  ("host/requests/identify_options.cpp", "constant_force"): "a parameter of the fit"}
+                  ("host/requests/identify_options.cpp", "constant_force"): "a parameter of the fit",
+                  ("host/fleet/record_estimate.cpp", "constant_force"): "a parameter of the fit"}
 
 TOPS = ("firmware", "hal", "sim", "host")
 SOURCES = {".cpp", ".hpp", ".js", ".html"}
