@@ -12,6 +12,8 @@
 #include <cstdlib>
 #include <fstream>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "host/fleet/trends.hpp"
 
