@@ -28,7 +28,9 @@ def arguments():
     parser.add_argument("--months", type=int, default=24, help="months [24]")
     parser.add_argument("--seed", type=int, default=1, help="what is drawn [1]")
     parser.add_argument("--jobs", type=int, default=2, help="records at a time [2]")
-    return parser.parse_args()
+    options = parser.parse_args()
+    options.program = pathlib.Path(options.program).resolve()  # records are simulated in folders of their own
+    return options
 
 
 def residuals(table, truths, begin):
