@@ -127,9 +127,10 @@ std::string fleet_report_html(const FleetReport& report) {
                   {"causes", std::move(causes)},
                   {"axes", axes_json(result, first)},
                   {"broken", broken_json(result)}};
-  return report_page({"Fleet", fmt::format("Fleet: {} axes", result.list.axes.size()), typeset(fleet_sentence(result)),
-                      report.command, report.version, fmt::format("{} machine files", files.size()), origin},
-                     assets::fleet_html(), {{"findings", items_of(findings_of(result))}}, data, {assets::fleet_js()});
+  return report_page(
+      {"Fleet", fmt::format("Fleet: {} axes", result.list.axes.size()), typeset(fleet_sentence(result)), report.command,
+       report.version, fmt::format("{} machine file{}", files.size(), files.size() == 1 ? "" : "s"), origin},
+      assets::fleet_html(), {{"findings", items_of(findings_of(result))}}, data, {assets::fleet_js()});
 }
 
 }  // namespace stiction::host

@@ -49,7 +49,7 @@ function trendText(course) {
   if (!course.trend) return 'no trend yet';
   const share = value => (100 * value / course.scale).toFixed(2);
   const slope = course.trend.slope >= 0 ? `+${share(course.trend.slope)}` : minus(share(course.trend.slope));
-  return `${slope} ± ${share(course.trend.half)}`;
+  return `${slope} ± ${share(course.trend.half)} % a month`;
 }
 
 function drawAxes() {
@@ -62,7 +62,7 @@ function drawAxes() {
                                             { class: course.alarm ? 'text differs' : 'text' }))]);
   show('axes', table([head], body));
   document.getElementById('axes-what').textContent =
-    `months from ${DATA.first}; at most ${DATA.false_alarms} false alarms are expected of an axis in a year`;
+    `months from ${DATA.first}, height of a chart in % of the parameter, trend with its 95 % interval; at most ${DATA.false_alarms} false alarms are expected of an axis in a year`;
 }
 
 function drawScatter() {
