@@ -6,7 +6,7 @@ import re
 
 import pages
 
-LANGUAGES = {"sh", "text", "toml", "python", "cpp", "cmake", "json", "csv", "diff", "markdown", "js"}
+LANGUAGES = {"sh", "text", "toml", "python", "c", "cpp", "cmake", "json", "csv", "diff", "markdown", "js"}
 # Why a block of commands is not run, or how it is.
 MARKS = {
     "sh": {
