@@ -1,10 +1,10 @@
 /* stiction from C, and from whatever calls C: MATLAB, LabVIEW, Octave, Julia, C#.
  *
  * Functions that return a pointer return NULL, and those that return an int a number other than 0, when they fail;
- * stiction_error() then says what was found and what was expected. Texts are UTF-8 and end with 0. What a function whose
- * name has "open", "run" or "read" returns is closed by the caller with the function of its kind; all other pointers
- * belong to the object that they were asked of and are good until it is closed. Different threads may use different
- * objects. Values are in SI units. Link with -lstiction. */
+ * stiction_error() then says what was found and what was expected. Texts are UTF-8 and end with 0. What a function
+ * whose name has "open", "run" or "read" returns is closed by the caller with the function of its kind; all other
+ * pointers belong to the object that they were asked of and are good until it is closed. Different threads may use
+ * different objects. Values are in SI units. Link with -lstiction. */
 #ifndef STICTION_H
 #define STICTION_H
 
@@ -40,7 +40,8 @@ typedef int (*stiction_progress)(const char* what, void* user);
 
 /* What a command of `stiction` takes beside a machine. Zero is a good value of every member. */
 typedef struct stiction_options {
-  const char* const* options; /* `option_count` texts "feed=16 m/min", as the command's --feed; of a flag "refine=true" */
+  const char* const*
+      options; /* `option_count` texts "feed=16 m/min", as the command's --feed; of a flag "refine=true" */
   size_t option_count;
   const char* const* logs; /* `log_count` paths, of a command that reads logs */
   size_t log_count;

@@ -32,9 +32,9 @@ constexpr double most_mass_ratio = 2.0;
 std::vector<Log> logs_of(const machine::Machine& machine, const std::filesystem::path& file) {
   auto log = read_log(file.string());
   for (const auto& [key, value] : log.comments)
-    if (key == "machine" && value != machine.id)
-      throw LogError(
-          fmt::format("{}: found a log of the machine {}; expected one of {}", file.string(), value, machine.id));
+    if (key == "machine" && value != machine.id && value != machine.name)  // our own logs have the name
+      throw LogError(fmt::format("{}: found a log of the machine {}; expected one of {} ({})", file.string(), value,
+                                 machine.id, machine.name));
   return stretches_of(std::move(log));
 }
 

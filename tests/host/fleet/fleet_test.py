@@ -117,6 +117,21 @@ class Fleet(unittest.TestCase):
         self.assertIn("other.csv: found a log of the machine mcfv5050ln; expected one of emps", messages[0])
         self.assertIn("is it a log of a different machine?", messages[1])
 
+    def test_judges_logs_of_the_simulations_of_linear_and_rotary_machines(self):
+        rows = [["axis", "machine", "date", "log", "machine_axis"]]
+        for machine, axis in (("mcfv5050ln", "X"), ("servo-joint", "J")):
+            made = subprocess.run([STICTION, "simulate", "commissioning", "--machine", machine, "--axis", axis, "--out",
+                                   self.folder / machine], capture_output=True, text=True, check=False)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            rows.append([machine, machine, "2026-01-01", f"{machine}/speeds.csv", axis])
+            rows.append([machine, machine, "2026-02-01", f"{machine}/other-speeds.csv", axis])
+        done = self.fleet(self.listed(rows), "--json", "--no-diagnosis")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(json.loads(done.stdout)["broken"], [])
+        table = (self.folder / "out" / "fleet.csv").read_text(encoding="utf-8")
+        for unit in ("mass,kg,", "mass,kg m^2,", "coulomb,N,", "coulomb,N m,"):
+            self.assertEqual(table.count(unit), 2, unit)
+
     def test_refuses_lists_that_are_wrong(self):
         head = ["axis", "machine", "date", "log"]
         self.assertIn("no such machine", self.refusal([head, ["a", "nothing", "2026-01-01", "a.csv"]]))
