@@ -1,5 +1,6 @@
 #include "host/cam/axis_load.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,8 @@ double AxisLoad::effort(double position, double speed, double acceleration) cons
       kind == sim::cam::Coordinate::rotary ? weight * sim::sine_cosine(position - weight_zero).sine : weight;
   return inertia() * acceleration + viscous * speed + coulomb * direction + down;
 }
+
+double AxisLoad::effort_left() const { return std::max(0.0, largest_effort - coulomb - std::fabs(weight)); }
 
 AxisLoad load_of(const machine::AxisModel& axis) {
   // A rotary axis is a linear one on a circle in the model (coordinate.hpp).

@@ -30,6 +30,8 @@ struct AxisLoad {
   double inertia() const { return load + rotor; }
   // What the motor gives, at the axis, at this `position`, `speed` and `acceleration` of it, in its unit over s.
   double effort(double position, double speed, double acceleration) const;
+  // Of the largest effort what Coulomb friction and the weight leave for accelerations.
+  double effort_left() const;
   // "N m", "rad", or "N", "m".
   const char* effort_unit() const { return kind == sim::cam::Coordinate::rotary ? "N m" : "N"; }
   const char* unit() const { return kind == sim::cam::Coordinate::rotary ? "rad" : "m"; }

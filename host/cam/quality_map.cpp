@@ -25,6 +25,12 @@ Complex of_pulse(const ShapingTask& task, double position, double length) {
   return residual_of(task, lift.sampled(task.begin, task.end()), task.end()) - of_rise(task) / task.stroke;
 }
 
+// What each cycle leaves goes on in the next ones: c + c^2 + .. of it, with c the mode's turn and decay over a cycle.
+double grown_by_running(const ShapingTask& task, bool running) {
+  if (!running) return 1.0;
+  return 1.0 / std::abs(1.0 - std::exp(task.mode().pole * (task.motion.curve.length() / task.master_speed)));
+}
+
 }  // namespace
 
 double quality_of_residual(const ShapingTask& task, double magnitude) {
@@ -34,8 +40,9 @@ double quality_of_residual(const ShapingTask& task, double magnitude) {
   return 4.0 / std::numbers::pi * magnitude * lasting * task.master_speed;
 }
 
-std::vector<LevelLine> map_of_one_pulse(const ShapingTask& task, double length, double periods) {
+std::vector<LevelLine> map_of_one_pulse(const ShapingTask& task, double length, double periods, bool running) {
   const Complex own = of_rise(task);
+  const double untuned = quality_of_residual(task, grown_by_running(task, running) * std::abs(own));
   const double last = task.end() - length, first = std::max(task.begin, last - periods * task.period_length());
   constexpr int columns = 400;  // a twentieth is kept over a sixtieth of a period
   std::vector<std::pair<double, Complex>> pulses;
@@ -51,7 +58,7 @@ std::vector<LevelLine> map_of_one_pulse(const ShapingTask& task, double length, 
       if (!above.points.empty()) {
         above.points.insert(above.points.end(), below.points.rbegin(), below.points.rend());
         above.points.push_back(above.points.front());
-        above.level = quality_of_residual(task, share * std::abs(own));
+        above.level = share * untuned;
         lines.push_back(above);
       }
       above = below = {};
@@ -71,12 +78,13 @@ std::vector<LevelLine> map_of_one_pulse(const ShapingTask& task, double length, 
   return lines;
 }
 
-std::vector<LevelLine> map_of_two_pulses(const ShapingTask& task, const sim::cam::PulsePair& where) {
+std::vector<LevelLine> map_of_two_pulses(const ShapingTask& task, const sim::cam::PulsePair& where, bool running) {
   const Complex own = of_rise(task);
+  const double untuned = quality_of_residual(task, grown_by_running(task, running) * std::abs(own));
   std::vector<LevelLine> lines;
   constexpr int places = 72;
   for (const double share : shares) {
-    LevelLine line{quality_of_residual(task, share * std::abs(own)), {}};
+    LevelLine line{share * untuned, {}};
     for (int k = 0; k <= places; ++k) {
       const Complex left = std::polar(share * std::abs(own), 2.0 * std::numbers::pi * k / places);
       const auto pair = pulse_pair_at(task, own - left, where);

@@ -20,9 +20,12 @@ struct LevelLine {
 double quality_of_residual(const sim::cam::ShapingTask& task, double magnitude);
 
 // Lines over place and amplitude of one pulse of `length` within the last `periods` of the rise of `task`, for shares
-// of the untuned cycle's number.
-std::vector<LevelLine> map_of_one_pulse(const sim::cam::ShapingTask& task, double length, double periods);
-// Lines over the amplitudes of two pulses where those of `where` are, for the same shares of the `task`'s number.
-std::vector<LevelLine> map_of_two_pulses(const sim::cam::ShapingTask& task, const sim::cam::PulsePair& where);
+// of the untuned cycle's number. `running`: of the cycle that a machine comes to in its turn, and not of one from rest.
+std::vector<LevelLine> map_of_one_pulse(const sim::cam::ShapingTask& task, double length, double periods,
+                                        bool running = false);
+// Lines over the amplitudes of two pulses where those of `where` are, for the same shares of the `task`'s number, from
+// rest or `running` as above.
+std::vector<LevelLine> map_of_two_pulses(const sim::cam::ShapingTask& task, const sim::cam::PulsePair& where,
+                                         bool running = false);
 
 }  // namespace stiction::host

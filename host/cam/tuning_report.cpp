@@ -81,7 +81,7 @@ void add_lines(sim::Chart& chart, const std::vector<LevelLine>& lines, double al
 }
 
 // The number over place and amplitude of one pulse, by the model that was identified; of two modes the first.
-sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner, bool running,
                          const TuningUnits& units) {
   sim::Chart chart;
   chart.title = "Area of the deviation over place and amplitude of one pulse, by the model that was identified";
@@ -90,10 +90,37 @@ sim::Chart map_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::Reco
   chart.caption =
       "Lines of one area; the innermost ones have a twentieth of the untuned area. A pulse at the end of the rise "
       "is the smallest.";
+  if (running) chart.caption += " The machine runs on with the pulse in every cycle.";
   auto identified = task;
   if (tuner.drive()) identified.drive = tuner.drive()->drive;
   const double length = std::min(identified.period_length(), 0.5 * task.length());
-  add_lines(chart, map_of_one_pulse(identified, length, 2.0), units.master, units);
+  add_lines(chart, map_of_one_pulse(identified, length, 2.0, running), units.master, units);
+  return chart;
+}
+
+// The number over the amplitudes of both pulses, with those of the cycles in turn; of one mode.
+sim::Chart path_of_tuning(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
+                          const std::vector<TuningCycle>& cycles, bool running, const TuningUnits& units) {
+  sim::Chart chart;
+  chart.title = "Amplitudes of both pulses, cycle by cycle";
+  chart.x_label = "amplitude of the first pulse, " + units.slave_unit;
+  chart.y_label = "amplitude of the second pulse, " + units.slave_unit;
+  chart.caption = running ? "Lines of one area are those of a machine that runs on with such pulses in every cycle, by "
+                            "the model that was identified. The second cycle has pulses for what the first one left, "
+                            "too, and so it lies off the least area; the path comes back to it."
+                          : "Lines of one area are those of a cycle from rest, by the model that was identified.";
+  sim::Series path{.name = "cycles in turn", .x = {}, .y = {}}, next{.name = "next", .x = {}, .y = {}, .points = true};
+  for (const TuningCycle& cycle : cycles) {
+    path.x.push_back(cycle.pulses ? cycle.pulses->first.amplitude * units.slave : 0.0);
+    path.y.push_back(cycle.pulses ? cycle.pulses->second.amplitude * units.slave : 0.0);
+  }
+  const auto& now = *tuner.pulses();
+  next.x.push_back(now.first.amplitude * units.slave);
+  next.y.push_back(now.second.amplitude * units.slave);
+  chart.series = {std::move(path), std::move(next)};
+  auto identified = task;
+  if (tuner.drive()) identified.drive = tuner.drive()->drive;
+  add_lines(chart, map_of_two_pulses(identified, now, running), units.slave, units);
   return chart;
 }
 
@@ -175,7 +202,7 @@ sim::ExperimentResult search_report(const sim::cam::ShapingTask& task, const sim
 }
 
 sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim::cam::RecordTuner& tuner,
-                                    const std::vector<TuningCycle>& cycles) {
+                                    const std::vector<TuningCycle>& cycles, bool running) {
   const auto units = units_of_tuning(task.motion.cam);
   sim::ExperimentResult result;
   result.experiment = "tune-cam";
@@ -238,7 +265,9 @@ sim::ExperimentResult tuning_report(const sim::cam::ShapingTask& task, const sim
   result.charts = {dwell_records(task, cycles, units)};
   // The model that was identified has one mode.
   if (!tuner.second_pulses()) result.charts.push_back(over_frequency(task, tuner, units));
-  result.charts.push_back(map_of_tuning(task, tuner, units));
+  result.charts.push_back(map_of_tuning(task, tuner, running, units));
+  if (tuner.pulses() && !tuner.second_pulses())
+    result.charts.push_back(path_of_tuning(task, tuner, cycles, running, units));
   return result;
 }
 

@@ -57,6 +57,21 @@ struct ByNumber {
 };
 ByNumber by_number(std::uint64_t seed, int cases);
 
+// A machine that does not stop: twelve cycles of the untuned motion, and four of what the tuner made of the record of
+// the one before each.
+struct RunningTuned {
+  std::vector<double> qualities;  // deg^2, of the last untuned cycle and the four behind it
+  std::vector<double> settled;    // deg^2, the same behind the first 20 degrees of the dwell
+};
+RunningTuned tuned_running(const Truth& truth);
+
+// `cases` machines by `seed` whose untuned cycle is worse than 1.56 deg^2 when they run on.
+struct RunningCampaign {
+  Share second, always;  // within 0.6 deg^2: the cycle behind the record; it and all behind it
+  double worst_first = 0.0, worst_second = 0.0, worst_later = 0.0;
+};
+RunningCampaign without_stop(std::uint64_t seed, int cases);
+
 // Of backlash: cases that end worse than they began, by more than a tenth of what the encoder's resolution is worth.
 Share worsened_by_backlash(std::uint64_t seed, int cases, double backlash);
 

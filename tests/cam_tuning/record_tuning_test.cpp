@@ -127,6 +127,18 @@ TEST(NumberTuning, SoAreTheyOnDrawnMachines) {
                fmt::format("{} of {}, {:.2f} deg^2", found.within.count, found.within.of, found.worst));
 }
 
+// Drawn machines, since the nine below have been looked at. What begins with less than a few increments of the encoder
+// does not show its decay well enough (docs/limits.md).
+TEST(RunningTuning, SoAreDrawnMachinesThatDoNotStop) {
+  const auto found = without_stop(611953, 40);
+  EXPECT_GE(found.second.percent(), 90.0);
+  EXPECT_GE(found.always.percent(), 80.0);
+  EXPECT_LE(std::max(found.worst_second, found.worst_later), 1.56);
+  test::figure("cam tuning: running on, 40 drawn cases: J <= 0.6 deg^2 in cycle 2, always, worst of them",
+               fmt::format("{} of {}, {} of {}, {:.2f}, {:.2f} deg^2", found.second.count, found.second.of,
+                           found.always.count, found.always.of, found.worst_second, found.worst_later));
+}
+
 // 15 % of the stiffness in 2000 cycles: what the first tuning alone leaves of it, and what production makes of it.
 TEST(RunningTuning, AGearThatWarmsIsFollowedInProduction) {
   std::mt19937_64 random(918273);
@@ -147,29 +159,16 @@ TEST(RunningTuning, OneCycleLaterTheLoadIsStillAndStaysSo) {
     for (const double factor : {0.8, 0.9, 1.0, 1.1, 1.2}) {
       const Truth truth{
           .factor = factor, .rise = rise, .delay = 2.5, .seed = 70 + static_cast<std::uint64_t>(10.0 * factor)};
-      auto settings = settings_of(truth);
-      settings.running = true;
-      sim::cam::RecordTuner tuner(task_of(truth), settings);
-      constexpr std::size_t before = 12, behind = 4;
-      std::vector<sim::cam::Cam> cams(before, motion_of(truth).cam);
-      std::vector<double> qualities;
-      for (std::size_t k = 0; k < behind; ++k) {
-        if (!tuner.done()) tuner.learn(run_on(truth, cams).last);
-        cams.push_back(tuner.cam());
-      }
-      const auto ran = run_on(truth, cams);
-      qualities = ran.qualities;
-      if (qualities[before - 1] <= 1.56) continue;  // it needs no tuning
+      const auto [qualities, settling] = tuned_running(truth);
+      if (qualities[0] <= 1.56) continue;  // it needs no tuning
       ++cases;
-      within += *std::max_element(qualities.begin() + before, qualities.end()) <= 0.6;
-      if (qualities[before] > worst) worst = qualities[before], of_worst = ran.settled[before];
-      for (std::size_t k = before; k < qualities.size(); ++k) settled = std::max(settled, ran.settled[k]);
-      for (std::size_t k = before + 1; k < qualities.size(); ++k) later = std::max(later, qualities[k]);
+      within += *std::max_element(qualities.begin() + 1, qualities.end()) <= 0.6;
+      if (qualities[1] > worst) worst = qualities[1], of_worst = settling[1];
+      settled = std::max(settled, *std::max_element(settling.begin() + 1, settling.end()));
+      later = std::max(later, *std::max_element(qualities.begin() + 2, qualities.end()));
     }
-  // Wanted are 0.6 of all; the one that begins with 416 deg^2 has 0.62, of which 0.43 is in the first 20 degrees of the
-  // dwell, where the drive has not settled yet. Pulses for the load's mode do not take that away.
-  EXPECT_GE(within, cases - 1);
-  EXPECT_LE(worst, 1.56);
+  EXPECT_EQ(within, cases);
+  EXPECT_LE(worst, 0.6);
   EXPECT_LE(later, 0.6);
   EXPECT_LE(settled, 0.6);
   test::figure(
@@ -217,7 +216,7 @@ TEST(RecordTuning, WhatCannotBeTunedIsRefusedOrLeftAlone) {
 }
 
 // Two damped sines of known amplitudes about a constant, with the encoder's noise.
-sim::cam::DwellRecord two_sines(double first, double second, double share, double length) {
+sim::cam::DwellRecord two_sines(double first, double second, double share, double length, double phase = 1.1) {
   sim::cam::DwellRecord record;
   std::mt19937_64 random(7);
   std::normal_distribution<double> noise(0.0, 0.003 * degree);
@@ -225,7 +224,7 @@ sim::cam::DwellRecord two_sines(double first, double second, double share, doubl
   for (double t = 0.05; t < 0.05 + length; t += 0.25e-3) {
     record.time.push_back(t);
     const double a = std::exp(-0.014 * turn * first * t) * std::cos(turn * first * t + 0.4);
-    const double b = std::exp(-0.01 * turn * second * t) * std::sin(turn * second * t + 1.1);
+    const double b = std::exp(-0.01 * turn * second * t) * std::sin(turn * second * t + phase);
     record.position.push_back(0.3 * degree * (a + share * b) + 0.1 * degree + noise(random));
   }
   return record;
@@ -247,6 +246,16 @@ TEST(TwoModes, BothAreFoundWithTheirAmplitudes) {
   // There is one mode alone in a record of one.
   const auto alone = two_sines(14.5, 40.0, 0.0, 0.18);
   EXPECT_FALSE(fit_two_modes(alone, sim::cam::fit_dwell(alone, 90.0)->mode, resolution, false));
+}
+
+// Nearer than half of the reciprocal of the record they look like one, which grows while they come into phase.
+TEST(TwoModes, OneThatGrowsIsTwo) {
+  const auto growth = [](const sim::cam::DwellRecord& record) {
+    const auto fit = sim::cam::fit_dwell(record, 90.0);
+    return fit ? growth_of(record, *fit) : -1.0;
+  };
+  EXPECT_EQ(growth(two_sines(14.5, 40.0, 0.0, 0.18)), 0.0);
+  EXPECT_GT(growth(two_sines(14.5, 16.2, 0.8, 0.18, 4.7)), resolution);
 }
 
 TEST(TwoModes, TwoThatAreTooNearAreRefusedWithBothFrequencies) {

@@ -88,8 +88,10 @@ sim::cam::ShapingTask task_of(const Truth& truth) {
 }
 
 sim::cam::TunerSettings settings_of(const Truth& truth) {
+  const auto load = host::load_of(machine_of(truth).axes.front());
   return {.resolution = resolution,
-          .share_of_limits = host::shares_of_limits(host::load_of(machine_of(truth).axes.front()), stand_speed)};
+          .share_of_limits = host::shares_of_limits(load, stand_speed),
+          .largest_force = load.effort_left()};
 }
 
 Cycle run(const Truth& truth, const sim::cam::Motion& motion, std::uint64_t number, int cycles) {

@@ -24,6 +24,7 @@ struct DwellFit {
   double scatter = 0.0;          // rms of what is left
   double frequency_error = 0.0;  // standard error, rad/s
   double damping_error = 0.0;    // of the damping ratio
+  double residual_error = 0.0;   // of the residual's magnitude
 
   // From peak to peak at the time 0.
   double peak_to_peak() const { return 4.0 * std::abs(residual); }
@@ -35,6 +36,10 @@ DwellRecord thinned(const DwellRecord& record);
 // Of a `record`, with a frequency within 35 % of `guess` (rad/s). None in a record of less than one period of the
 // guess, or whose vibration is below its scatter.
 std::optional<DwellFit> fit_dwell(const DwellRecord& record, double guess);
+
+// By how much the vibration of a `record`, whose `fit` that is, grows from peak to peak until its end, as that of a
+// mode by itself does not; 0 where it does not grow for sure.
+double growth_of(const DwellRecord& record, const DwellFit& fit);
 
 // The residual of a `record` that vibrates with a `mode`, as fit_dwell() has it; the record's constant becomes
 // `offset`, where it is given.

@@ -9,13 +9,14 @@
 
 #include "sim/cam/law.hpp"
 #include "sim/cam/shaping/lift.hpp"
+#include "sim/cam/shaping/running_places.hpp"
 
 namespace stiction::sim::cam {
 namespace {
 
 // By how much the residual of a drive may differ from that of its model and still be the drive's: dead time and the
 // periods of its loops, about a millisecond, are a tenth of the load's radian. What is further off is no such drive.
-constexpr double drive_share = 0.1;
+constexpr double drive_share = 0.1, of_drives = drive_share / 1.96;  // the latter as a standard deviation
 
 // Before the lag is known, 8 ms are more than any encoder's.
 constexpr double unknown_lag = 8e-3;
@@ -55,6 +56,17 @@ DwellRecord dwell_of(const ShapingTask& task, const CycleRecord& record, double 
         "found a dwell of {:.1f} ms behind the drive's lag; expected a period of the load or more, {:.1f} ms",
         dwell.time.empty() ? 0.0 : (dwell.time.back() - dwell.time.front()) * 1e3, task.mode().period() * 1e3));
   return dwell;
+}
+
+// Two modes that are too near for a second one to be found beat: where the beat rises, the vibration grows. Throws
+// CamError where the one of the `dwell` does, by more than the encoder's `resolution`.
+void require_one_mode(const DwellRecord& dwell, const DwellFit& fit, double resolution) {
+  if (growth_of(dwell, fit) < resolution) return;
+  const double length = dwell.time.back() - dwell.time.front();
+  throw CamError(fmt::format(
+      "found a vibration at about {:.2f} Hz that grows in the dwell, as that of two modes does which {:.0f} ms do not "
+      "tell apart; expected one that decays, or modes {:.1f} Hz apart or more, or a longer dwell",
+      fit.mode.frequency() / (2.0 * std::numbers::pi), 1e3 * length, 1.0 / length));
 }
 
 PulsePair room_for(const std::optional<PulsePair>& pulses) {
@@ -125,8 +137,25 @@ Cam RecordTuner::steady_cam() const {
   return with_lift(task_.motion.cam, with_pulses(task_, corrected(-carried(last_))));
 }
 
-// The pulses for the second cycle: those at the end of the rise, where they are smallest; where these break a limit of
-// the axis, the first ones that do not, or those that break it least.
+// The standard error of the model's residual over that of the record, which was fitted by `fit`: of the record's
+// residual, and of the model's by frequency and damping.
+double RecordTuner::ratio_error(const DwellFit& fit) const {
+  const auto with = [&](double frequency, double damping) {
+    IdentifiedDrive other = *drive_;
+    const double w = fit.mode.frequency() + frequency, zeta = fit.mode.damping_ratio() + damping;
+    other.ringing.pole = {-zeta * w, w * std::sqrt(1.0 - zeta * zeta)};
+    other.drive = drive_with_mode(task_.drive, other.ringing);
+    return modelled_residual(task_, other, task_.motion, other.cycles);
+  };
+  const auto here = with(0.0, 0.0);
+  const double by_frequency = std::abs(with(fit.frequency_error, 0.0) - here) / std::abs(here),
+               by_damping = std::abs(with(0.0, fit.damping_error) - here) / std::abs(here);
+  return std::hypot(fit.residual_error / std::abs(fit.residual), by_frequency, by_damping);
+}
+
+// The pulses for the second cycle: from rest those at the end of the rise, where they are smallest, running those that
+// leave the load most still by the model; where these break a limit of the axis, the first ones that do not, or those
+// that break it least.
 PulsePair RecordTuner::first_pulses(const CycleRecord& record, const DwellFit& fit) {
   drive_ = identify_drive(task_, record, fit, settings_.running);
   task_.drive = drive_->drive;
@@ -136,13 +165,24 @@ PulsePair RecordTuner::first_pulses(const CycleRecord& record, const DwellFit& f
              modelled = modelled_residual(task_, *drive_, task_.motion, drive_->cycles);
   const auto ratio = modelled / recorded;
   const bool drives = std::abs(ratio - 1.0) < drive_share;
-  if (drives) scale_ *= ratio;
+  // As far as it is known: a rise that hardly vibrates shows its own errors for the drive's.
+  if (drives) {
+    const double error = ratio_error(fit) / of_drives;
+    scale_ *= 1.0 + (ratio - 1.0) / (1.0 + error * error);
+  }
   // Running, the next cycle begins as this one did: its own residual and what is carried over make the same sum.
   last_ = fit.residual * scale_;
   const std::complex<double> beyond = (drives ? 0.0 : recorded - modelled) + carried(last_);
+  std::vector<PulsePlaces> in_turn;
+  if (settings_.running)
+    in_turn = running_places(task_, {.all = last_,
+                                     .carried = carried(last_),
+                                     .frequency_error = fit.frequency_error / fit.mode.frequency(),
+                                     .largest_force = usable_share * settings_.largest_force});
+  in_turn.insert(in_turn.end(), pulse_places().begin(), pulse_places().end());
   std::optional<PulsePair> best;
   double least = 0.0;
-  for (const auto& places : pulse_places()) {
+  for (const auto& places : in_turn) {
     const auto pulses = cancelling(last_, beyond, places);
     if (!pulses) continue;
     double share = share_of(*pulses);
@@ -227,6 +267,12 @@ void RecordTuner::measure(const DwellRecord& dwell, TunedCycle& cycle) {
   if (!two_) {
     cycle.fit = fit_dwell(dwell, task_.mode().frequency());
     if (cycle.fit && cycles_ == 1) first_residual_ = cycle.fit->residual;
+    // Running, the mode is better known from the cycle in which it was not cancelled.
+    if (settings_.running && drive_) {
+      if (!cycle.fit) cycle.fit.emplace();
+      cycle.fit->mode = drive_->ringing;
+      cycle.fit->residual = residual_with_mode(dwell, drive_->ringing, &cycle.fit->offset);
+    }
     offset = cycle.fit ? cycle.fit->offset : mean(dwell.position);
     if (cycle.fit) cycle.peak_to_peak = cycle.fit->peak_to_peak();
   }
@@ -244,6 +290,7 @@ void RecordTuner::measure(const DwellRecord& dwell, TunedCycle& cycle) {
     cycle.peak_to_peak = cycle.fit->peak_to_peak() + cycle.second->peak_to_peak();
   }
   cycle.quality = area(dwell, offset, task_.master_speed);
+  if (!two_ && cycles_ == 1 && cycle.fit) require_one_mode(dwell, *cycle.fit, settings_.resolution);
 }
 
 // Where the four pulses are: where they ask for least, and of those that a limit of the axis forbids the ones that
@@ -311,6 +358,14 @@ void RecordTuner::cancel_own() {
   use(four[0], four[1]);
 }
 
+// The same where the last `cycle` says what of its own it left.
+void RecordTuner::cancel_own_of(const TunedCycle& cycle) {
+  if (!two_) return use(corrected(cycle.fit->residual * scale_ - carried(last_)));
+  const auto before = carried_of_both();
+  const auto four = corrected_four({two_->now[0] - before[0], two_->now[1] - before[1]});
+  use(four[0], four[1]);
+}
+
 // The first correction has shown what pulses do: where it left more of the last residual than a model may be off, the
 // pulses' gain is that of the machine (the rule of the secant).
 void RecordTuner::learn_gain(std::complex<double> residual) {
@@ -353,18 +408,24 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   ++cycles_;
   const bool had_two = two_.has_value();
   measure(dwell, cycle);
-  if (cycles_ > 1 && cycle.quality > best_quality_)
+  const bool still = !cycle.fit || cycle.peak_to_peak < settings_.resolution;
+  // Running, one more cycle costs nothing, and of two numbers that the encoder does not resolve neither is worse.
+  const bool within_noise = settings_.running && cycles_ > 1 && still;
+  if (cycles_ > 1 && cycle.quality > best_quality_ && !within_noise)
     return keep_better(cycle, "It became worse; the motion of the best cycle is kept.");
   best_quality_ = cycle.quality;
   better_ = pulses_;
   better_second_ = second_pulses_;
   better_last_ = last_;
   if (two_) better_lasts_ = two_->last;
-  if (!cycle.fit || cycle.peak_to_peak < settings_.resolution) {
+  // The first quiet cycle of a machine that runs on was for what the one before it had left; how still the load is with
+  // nothing carried over, the next one shows.
+  const bool quiet_before = before_ < settings_.resolution;
+  if (still && !(within_noise && (drive_ || two_) && !quiet_before)) {
     done_ = true;
     cycle.note = "The residual is within the resolution of the encoder; nothing is changed.";
-    if (settings_.running && (drive_ || two_) && cycles_ > 1) {
-      cancel_own();
+    if (within_noise && (drive_ || two_)) {
+      cancel_own_of(cycle);
       cycle.note =
           "The residual is within the resolution of the encoder; the motion cancels its own residual from now on.";
     }
@@ -374,7 +435,7 @@ TunedCycle RecordTuner::learn(const CycleRecord& record) {
   // had not been seen. Running, what the untuned cycle left is still carried over then, and the frequency is not known
   // well enough for so much of it.
   const int enough = settings_.running ? 3 : 2;
-  if (cycles_ > enough && cycle.peak_to_peak > 0.5 * before_ && had_two == two_.has_value()) {
+  if (cycles_ > enough && !still && cycle.peak_to_peak > 0.5 * before_ && had_two == two_.has_value()) {
     done_ = true;
     cycle.note = "The residual does not go away by pulses; nothing is changed.";
     if (settings_.running && (drive_ || two_)) cancel_own();

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct TunerSettings {
   // The largest share of a limit of the axis that a motion takes, with that Coulomb friction at the motor, as a torque
   // or a force at the output; none: no limits.
   std::function<double(const Motion& motion, double coulomb)> share_of_limits{};
+  // Of the drive at the output, for the motion alone: a force or a torque.
+  double largest_force = std::numeric_limits<double>::infinity();
   // The machine does not stop: each record is of a running cycle, the first one behind many of the untuned motion. What
   // the last cycle left is cancelled with the cycle's own residual, so the motion of the next cycle is not that of the
   // one behind it.
@@ -76,6 +79,7 @@ class RecordTuner {
   bool done() const { return done_; }
 
  private:
+  double ratio_error(const DwellFit& fit) const;
   PulsePair first_pulses(const CycleRecord& record, const DwellFit& fit);
   std::optional<PulsePair> cancelling(std::complex<double> residual, std::complex<double> beyond,
                                       const PulsePlaces& places) const;
@@ -95,6 +99,7 @@ class RecordTuner {
   FourPulses corrected_four(const std::array<std::complex<double>, 2>& residuals) const;
   void correct_four();
   void cancel_own();
+  void cancel_own_of(const TunedCycle& cycle);
   Curve rise() const;
 
   ShapingTask task_;

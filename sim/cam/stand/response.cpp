@@ -87,6 +87,20 @@ class ExactStep {
     return next;
   }
 
+  // Of the drive on the rotor, whose transfer function has the numerator (k_D + b_D s)(I_Z s^2 + b_H s + k_H). `input`,
+  // `speed`: of the set-point, over time.
+  double force(const ElasticDrive& drive, const State& x, double input, double speed) const {
+    const auto& [inertia, rotor, stiffness, damping, k, b] = drive;
+    const double unit = k * stiffness;
+    const State n{1.0, (k * damping + b * stiffness) * rate_ / unit, (k * inertia + b * damping) * rate_ * rate_ / unit,
+                  b * inertia * rate_ * rate_ * rate_ / unit};
+    const double fourth =
+        input - denominator_[0] * x[0] - denominator_[1] * x[1] - denominator_[2] * x[2] - denominator_[3] * x[3];
+    const double position = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + n[3] * x[3];
+    const double moves = (n[0] * x[1] + n[1] * x[2] + n[2] * x[3] + n[3] * fourth) * rate_;
+    return k * (input - position) + b * (speed - moves);
+  }
+
   // Of the load, with the set-point where it is.
   LoadState load(const State& x, double input, double master) const {
     const double fourth =
@@ -129,12 +143,12 @@ class ExactStep {
   std::array<State, 6> from_input_{};
 };
 
-// Runs over `motion` and calls `each(master, state, set-point)` at every state, the start included.
+// Runs over `motion` and calls `each(master, state, set-point, its speed)` at every state, the start included.
 template <class Each>
 void run_exactly(ExactStep& step, const Motion& motion, const ResponseSettings& settings, const Each& each) {
   const double start = motion.curve(motion.curve.begin());
   State state{};
-  each(motion.curve.begin(), state, 0.0);
+  each(motion.curve.begin(), state, 0.0, motion.curve.derivative(motion.curve.begin(), 1) * settings.master_speed);
   for_each_stretch(motion, settings, [&](const Stretch& s, double cycles, double offset, bool same) {
     if (!same) step.set_step(s.length / settings.master_speed);
     const auto first = state_at(s, s.begin, offset - start), last = state_at(s, s.begin + s.length, offset - start);
@@ -142,7 +156,7 @@ void run_exactly(ExactStep& step, const Motion& motion, const ResponseSettings& 
     Quintic input;
     std::copy(coefficients.begin(), coefficients.end(), input.begin());
     state = step.advance(state, input);
-    each(s.begin + s.length + cycles, state, last.position);
+    each(s.begin + s.length + cycles, state, last.position, last.speed / s.length * settings.master_speed);
   });
 }
 
@@ -190,11 +204,20 @@ std::vector<LoadState> transfer_response(const ElasticDrive& drive, const Motion
   ExactStep step(transfer_function(drive));
   const double start = motion.curve(motion.curve.begin());
   std::vector<LoadState> states;
-  run_exactly(step, motion, settings, [&](double master, const State& x, double input) {
+  run_exactly(step, motion, settings, [&](double master, const State& x, double input, double) {
     states.push_back(step.load(x, input, master));
     states.back().position += start;
   });
   return states;
+}
+
+std::vector<double> transfer_forces(const ElasticDrive& drive, const Motion& motion, const ResponseSettings& settings) {
+  ExactStep step(transfer_function(drive));
+  std::vector<double> forces;
+  run_exactly(step, motion, settings, [&](double, const State& x, double input, double speed) {
+    forces.push_back(step.force(drive, x, input, speed));
+  });
+  return forces;
 }
 
 std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion& motion,
@@ -245,7 +268,7 @@ std::complex<double> modal_residual(const ElasticDrive& drive, const Motion& mot
   double reached = 0.0;
   const ResponseSettings settings{.master_speed = master_speed};
   bool done = false;
-  run_exactly(step, motion, settings, [&](double master, const State& x, double input) {
+  run_exactly(step, motion, settings, [&](double master, const State& x, double input, double) {
     if (done) return;
     const std::complex<double> along = left[0] * (x[0] - input) + left[1] * x[1] + left[2] * x[2] + left[3] * x[3];
     found = (n[0] + n[1] * p + n[2] * p * p) * quotient(along, across);

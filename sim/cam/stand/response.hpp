@@ -36,6 +36,10 @@ std::vector<LoadState> transfer_response(const ElasticDrive& drive, const Motion
 std::vector<LoadState> lagrange_response(const ElasticDrive& drive, const Motion& motion,
                                          const ResponseSettings& settings, double coulomb = 0.0);
 
+// The force or torque with which the drive pushes the rotor, by the transfer function; as many as transfer_response()
+// has states of the same `drive`, `motion` and `settings`.
+std::vector<double> transfer_forces(const ElasticDrive& drive, const Motion& motion, const ResponseSettings& settings);
+
 // How the load's mode vibrates about the set-point at the master's place `at` of the first cycle, where the motion
 // rests: the load deviates by 2 Re(c e^(pole t)) from then on. Linear in the motion. `drive`, `motion`, `master_speed`:
 // as above.

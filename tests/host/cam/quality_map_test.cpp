@@ -51,6 +51,29 @@ TEST(QualityMap, APulseOnALineLeavesTheNumberOfTheLine) {
                           [&](const LevelLine& line) { return line.level == inner->level && inside(line); }));
 }
 
+// A machine that does not stop, behind so many cycles that a thousandth of the first one is left.
+TEST(QualityMap, OfAMachineThatRunsOnItIsTheNumberOfTheLastCycle) {
+  const auto given = task();
+  const auto where = *pulse_pair(given, 0.0);
+  constexpr int cycles = 13;
+  const auto number = [&](const sim::cam::Curve& lift) {
+    auto cam = with_lift(given.motion.cam, lift);
+    const auto motion = compose(cam);
+    const auto states = transfer_response(given.drive, motion, {.master_speed = stand_speed, .cycles = cycles});
+    return dwell_figures(states, motion, given.dwell).quality;
+  };
+  const double untuned = number(own_rise(given, given.stroke));
+  const auto lines = map_of_two_pulses(given, where, true), at_rest = map_of_two_pulses(given, where);
+  EXPECT_GT(std::fabs(lines.back().level / at_rest.back().level - 1.0), 0.1);
+  for (const LevelLine& line : lines)
+    for (std::size_t k = 0; k < line.points.size(); k += 9) {
+      auto pair = where;
+      pair.first.amplitude = line.points[k][0];
+      pair.second.amplitude = line.points[k][1];
+      EXPECT_NEAR(number(with_pulses(given, pair)), line.level, 0.125 * line.level + 0.01 * untuned);
+    }
+}
+
 TEST(QualityMap, TwoPulsesOnALineLeaveTheNumberOfTheLine) {
   const auto given = task();
   const auto where = *pulse_pair(given, 0.0);
