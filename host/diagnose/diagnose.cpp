@@ -238,13 +238,13 @@ Verdict diagnose(const DiagnoseInput& input) {
   verdict.exact_records = found.exact_records;
   begin(2);
   const Eigen::VectorXd comparable = in_same_state(verdict, records, found);
-  const HeldOutData unseen{held_out.regressors, comparable, records.context, input.seed};
+  const HeldOutData unseen{held_out.regressors, comparable, records.context, records.responses, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
   give_figures(verdict, records, explained, unseen);
   begin(4);
   propose_next_measurement(verdict,
-                           {input.machine, input.axis, records.settings, training.regressors, explained.inside,
-                            records.context, explained.found},
+                           {input.machine, input.axis, records.settings, training.logs, training.regressors,
+                            explained.inside, records.context, explained.found},
                            input.next_measurement);
   // Behind the terms of the residual force, whose places the next measurement knows.
   const auto& of_shaft = between.causes;

@@ -15,7 +15,7 @@ constexpr std::size_t first_draw = 1000, draws = 12;
 
 // N, of the rows; empty where no exact machine can go the way of the record.
 Eigen::VectorXd exact_floor(const Prepared& prepared, const DiagnoseInput& input, const Record& record) {
-  const auto drawn = draw(exact_records(prepared, input, record, record.target), first_draw, first_draw + draws);
+  const auto drawn = exact_records(prepared, input, record, record.target)(first_draw, first_draw + draws);
   if (drawn.empty()) return {};
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(record.target.size());
   for (const auto& each : drawn) sum += each.target;
@@ -27,10 +27,9 @@ Eigen::VectorXd exact_floor(const Prepared& prepared, const DiagnoseInput& input
 void take_exact_floor_off(Prepared& prepared, const DiagnoseInput& input) {
   if (!prepared.context.exact_records) return;
   auto &training = prepared.training, &held_out = prepared.held_out;
-  const auto& logs = training.rows.logs();
   Eigen::VectorXd of_training = exact_floor(prepared, input, training);
-  if (of_training.size() == 0 ||
-      noise_log_likelihood(training.target - of_training, logs) <= noise_log_likelihood(training.target, logs))
+  if (of_training.size() == 0 || noise_log_likelihood(training.target - of_training, training.regressors) <=
+                                     noise_log_likelihood(training.target, training.regressors))
     return;
   Eigen::VectorXd of_held_out = exact_floor(prepared, input, held_out);
   if (of_held_out.size() == 0) return;

@@ -10,8 +10,10 @@
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/redrawn_residual.hpp"
+#include "host/diagnose/record/replay_setup.hpp"
 #include "host/identify/identification.hpp"
 #include "host/simulate/control_run.hpp"
+#include "host/simulate/on_all_cores.hpp"
 
 namespace stiction::host {
 namespace {
@@ -23,7 +25,7 @@ class Maker {
         original_(original),
         machine_(input.machine),
         axis_(input.axis),
-        disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), rows().logs(), rows().time,
+        disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), original.regressors, rows().time,
                      rows().period(0)),
         driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
         own_motion_(!prepared.known_motion ||
@@ -36,10 +38,40 @@ class Maker {
         mean_own_residual(runs_of_target(original_, machine_, axis_), original_.logs, prepared.axis, prepared.settings);
   }
 
-  std::optional<ExactRecord> operator()(std::size_t draw) const {
+  std::vector<ExactRecord> operator()(std::size_t begin, std::size_t end) const {
+    std::vector<std::vector<Log>> forced;
+    for (std::size_t draw = begin; draw < end; ++draw) forced.push_back(under_forces(draw));
+    auto runs = replays_together(machine_of_axis(machine_, axis_), forced);
+    std::vector<std::optional<ExactRecord>> made(runs.size());
+    on_all_cores(runs.size(), [&](std::size_t k) {
+      if (runs[k]) made[k] = measured(std::move(*runs[k]));
+    });
+    std::vector<ExactRecord> followed;
+    for (auto& record : made)
+      if (record) followed.push_back(std::move(*record));
+    return followed;
+  }
+
+ private:
+  const LogRows& rows() const { return original_.rows; }
+
+  // The logs that are replayed under a draw of the forces.
+  std::vector<Log> under_forces(std::size_t draw) const {
+    auto logs = replay_setup_of(machine_, axis_, driven_).logs;
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      auto& force = logs[k].axes.front().external_force;
+      force.resize(logs[k].t.size(), 0.0);
+      const auto drawn = disturbance_.drawn(k, logs[k].t, draw * logs.size() + k);
+      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
+    }
+    return logs;
+  }
+
+  // What these `runs` are as a record; none where the machine cannot follow them once more.
+  std::optional<ExactRecord> measured(std::vector<Log> runs) const {
     try {
       Record record;
-      record.logs = recorded(draw);
+      record.logs = recorded(std::move(runs));
       measure(record, prepared_.axis, prepared_.settings);
       if (!prepare(record)) return std::nullopt;
       if (original_.friction == FrictionAlong::simulated_motion)
@@ -54,19 +86,8 @@ class Maker {
     }
   }
 
- private:
-  const LogRows& rows() const { return original_.rows; }
-
-  // The logs as the machine of the file makes them under a draw of the forces, with the set-points that the record has.
-  std::vector<Log> recorded(std::size_t draw) const {
-    auto setup = replay_setup_of(machine_, axis_, driven_);
-    for (std::size_t k = 0; k < setup.logs.size(); ++k) {
-      auto& force = setup.logs[k].axes.front().external_force;
-      force.resize(setup.logs[k].t.size(), 0.0);
-      const auto drawn = disturbance_.drawn(k, setup.logs[k].t, draw * setup.logs.size() + k);
-      std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
-    }
-    auto logs = replays(setup);
+  // Runs as the drive would have recorded them, with the set-points that the record has.
+  std::vector<Log> recorded(std::vector<Log> logs) const {
     for (std::size_t k = 0; k < logs.size(); ++k) {
       auto& channels = logs[k].axes.front();
       const auto& original = channels_of(original_.logs[k], prepared_.axis);
@@ -108,8 +129,9 @@ class Maker {
 
 ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
                            const Eigen::VectorXd& force) {
-  return
-      [maker = std::make_shared<Maker>(prepared, input, original, force)](std::size_t draw) { return (*maker)(draw); };
+  return [maker = std::make_shared<Maker>(prepared, input, original, force)](std::size_t begin, std::size_t end) {
+    return (*maker)(begin, end);
+  };
 }
 
 }  // namespace stiction::host

@@ -12,6 +12,7 @@
 #include "host/diagnose/record/noise_floor.hpp"
 #include "host/diagnose/record/record_checks.hpp"
 #include "host/diagnose/record/record_rows.hpp"
+#include "host/diagnose/record/replay_setup.hpp"
 #include "host/diagnose/statistics/noise_model.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/own_identification.hpp"
@@ -141,8 +142,8 @@ void take_motion(Prepared& prepared, const DiagnoseInput& input, Verdict& verdic
 void take_friction(Prepared& prepared) {
   if (!sticks_rigidly(prepared.axis)) return;
   const auto& training = prepared.training;
-  if (noise_log_likelihood(along_regressors(training, prepared.axis), training.rows.logs()) <=
-      noise_log_likelihood(training.target, training.rows.logs()))
+  if (noise_log_likelihood(along_regressors(training, prepared.axis), training.regressors) <=
+      noise_log_likelihood(training.target, training.regressors))
     return;
   for (auto* record : {&prepared.training, &prepared.held_out}) {
     record->target = along_regressors(*record, prepared.axis);
@@ -182,15 +183,13 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   auto &training = prepared.training, &held_out = prepared.held_out;
   const auto friction = training.friction;
   const auto logs = joined(training.driven, held_out.driven);
-  const auto simulated = joined(training.simulated, held_out.simulated);
-  const auto disturbed_by = [&prepared, &input, logs, simulated, friction](const Eigen::VectorXd& force) {
+  const auto disturbed_by = [&prepared, &input, logs, friction](const Eigen::VectorXd& force) {
     const auto& rows = prepared.training.rows;
     return EffectResponse(input.machine, input.axis, logs, prepared.settings, friction,
-                          Disturbance(force, rows.logs(), rows.period(0)), simulated);
+                          Disturbance(force, rows.logs(), rows.period(0)));
   };
   for (const auto limit_cycle : {QuantizerLimitCycle::simulated, QuantizerLimitCycle::smoothed})
-    prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, friction, limit_cycle,
-                                    limit_cycle == QuantizerLimitCycle::simulated ? simulated : std::vector<Log>{});
+    prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, friction, limit_cycle);
   prepared.context.disturb = [&prepared, disturbed_by](const Eigen::VectorXd& force) {
     prepared.context.response = disturbed_by(force);
   };
@@ -199,7 +198,7 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   auto machine = input.machine;
   without_windings(machine.axes[input.axis]);
   EffectResponse own(machine, input.axis, logs, prepared.settings, friction,
-                     Disturbance(training.target, training.rows.logs(), training.rows.period(0)), simulated);
+                     Disturbance(training.target, training.rows.logs(), training.rows.period(0)));
   own.take_silence(
       joined_runs(runs_of_target(training, machine, input.axis), runs_of_target(held_out, machine, input.axis)));
   const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {
@@ -208,8 +207,8 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   };
   // Where the record is quieter than what is left of it would make it, the runs in silence are the nearer ones.
   const Eigen::VectorXd off = of_disturbance(training);
-  if (noise_log_likelihood(training.target - off, training.rows.logs()) <=
-      noise_log_likelihood(training.target, training.rows.logs()))
+  if (noise_log_likelihood(training.target - off, training.regressors) <=
+      noise_log_likelihood(training.target, training.regressors))
     return;
   training.of_disturbance = off;
   held_out.of_disturbance = of_disturbance(held_out);

@@ -7,8 +7,8 @@
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/record/diagnose_input.hpp"
+#include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/record.hpp"
-#include "host/diagnose/record/replay_setup.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
 
 namespace stiction::host {

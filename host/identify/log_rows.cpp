@@ -9,6 +9,19 @@ auto as_vector(const std::vector<double>& values) {
   return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
 }
 
+constexpr std::size_t shortest_rest = 16;  // rows: a reversal is none
+
+// Marks those of a log's rows in which its set-point stays, given the set-point of each (m).
+void mark_rest(std::span<const double> set_point, std::span<double> at_rest) {
+  for (std::size_t begin = 0, end = 0; begin < set_point.size(); begin = end) {
+    end = begin + 1;  // a value that is no number differs from itself
+    while (end < set_point.size() && set_point[end] == set_point[begin]) ++end;
+    if (end - begin >= shortest_rest)
+      std::fill(at_rest.begin() + static_cast<std::ptrdiff_t>(begin),
+                at_rest.begin() + static_cast<std::ptrdiff_t>(end), 1.0);
+  }
+}
+
 // The column of samples that count less than whole. Force and regressors are multiplied by the same weight before they
 // are filtered, so that the equation of each sample keeps holding and nothing of a sample that does not count reaches
 // a row.
@@ -31,6 +44,10 @@ LogRows::LogRows(std::vector<Motion> motions, const SignalSettings& settings) : 
   force = stacked([](const Motion& m) { return m.force; });
   acceleration = stacked([](const Motion& m) { return m.a; });
   velocity = stacked([](const Motion& m) { return m.v; });
+  at_rest_.resize(count);
+  for (std::size_t k = 0; k < motions_.size(); ++k)
+    if (!motions_[k].x_set.empty())
+      mark_rest(filters_[k].sampled(motions_[k].x_set), std::span(at_rest_).subspan(logs_[k], filters_[k].rows()));
   weight = counts_;
   if (std::any_of(motions_.begin(), motions_.end(), [](const Motion& m) { return !m.weight.empty(); }))
     weight = stacked([](const Motion& m) { return std::vector<double>(m.t.size(), 1.0); });

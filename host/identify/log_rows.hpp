@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "host/identify/motion.hpp"
@@ -38,6 +39,9 @@ class LogRows {
   void weigh(Eigen::VectorXd counts);
   // The weight of each row.
   const Eigen::VectorXd& counts() const { return counts_; }
+  // 1 for each row in which the set-point stays for a while, as in a dwell or between two motions, else 0; of logs
+  // without set-points 0.
+  std::span<const double> at_rest() const { return at_rest_; }
 
   // A regressor of one log, zero in the rows of the others.
   Eigen::VectorXd of_log(std::size_t log, const std::vector<double>& column) const;
@@ -51,6 +55,7 @@ class LogRows {
   std::vector<RowFilter> filters_;
   std::vector<std::size_t> logs_;
   Eigen::VectorXd counts_;
+  std::vector<double> at_rest_;
 };
 
 }  // namespace stiction::host

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <numbers>
 #include <string_view>
 #include <vector>
 
 #include "sim/effects/effect_values.hpp"
+#include "sim/number/sine_cosine.hpp"
 
 namespace stiction::sim {
 
@@ -32,7 +32,7 @@ class Harmonics {
   };
   // Harmonic k from k - 1 by rotating once more.
   Point at(double x) const {
-    const double c1 = std::cos(angle_per_metre_ * x), s1 = std::sin(angle_per_metre_ * x);
+    const auto [s1, c1] = sine_cosine(angle_per_metre_ * x);
     double c = 1.0, s = 0.0;
     Point sum;
     for (std::size_t k = 0; k < cosine_.size(); ++k) {

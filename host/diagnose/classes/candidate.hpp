@@ -56,8 +56,9 @@ struct SearchContext : Scans {
   std::function<void(const Eigen::VectorXd&)> disturb;
   // Of exact machines under forces like this one (N, of the rows): exact_records.hpp. Empty: no simulation.
   std::function<ExactRecords(const Eigen::VectorXd&)> exact_records;
-  // Of each candidate, nats: its price beyond what all of them have (calibration.hpp). Empty: none.
-  std::vector<double> prices;
+  // Of each candidate, nats: what it has to pay beside all others, and what it has to be worth beyond that before it is
+  // called a cause (calibration.hpp). Empty: nothing.
+  std::vector<double> prices, hurdles;
   double stroke() const { return highest_position - lowest_position; }
 };
 

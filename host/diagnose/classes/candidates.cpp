@@ -22,9 +22,10 @@ std::span<const Candidate> candidates() {
   static const std::vector<Candidate> table = [] {
     std::vector<Candidate> made;
     for (const sim::EffectId effect : sim::all_effects())
-      if (const auto* regressor = regressor_of(effect))
-        for (const auto* force : {&regressor->force, &regressor->other_force})
-          if (force->columns != nullptr) made.emplace_back(*force).effect = effect;
+      if (const auto* regressor = regressor_of(effect)) {
+        if (regressor->force.columns != nullptr) made.emplace_back(regressor->force).effect = effect;
+        for (const auto& force : regressor->other_forces) made.emplace_back(force).effect = effect;
+      }
     for (const Candidate& shape :
          {signatures::localised_force::shape, signatures::ripple_with_speed::shape,
           signatures::force_after_reversal::shape, signatures::force_after_reversal::shape_on_way_back,

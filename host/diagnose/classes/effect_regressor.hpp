@@ -13,7 +13,7 @@ namespace stiction::host {
 
 struct EffectRegressor {
   Candidate force{};                            // in the residual force; without columns: it does not show there
-  Candidate other_force{};                      // of another arrangement of the same parts; without columns: none
+  std::span<const Candidate> other_forces{};    // of other arrangements of the same parts
   std::span<const CommandParameter> command{};  // in the command residual
   EncoderCause encoders{};                      // in the difference of two encoders; without columns: not there
   std::string_view not_looked_for{};            // why, where it is looked for in none of them

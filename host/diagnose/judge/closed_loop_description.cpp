@@ -77,11 +77,11 @@ class Description {
     return blocks_of(rows_.velocity, rows_.logs(), static_cast<std::size_t>(rows_.rows() / 60 + 1));
   }
   double likelihood(const Eigen::VectorXd& residual) const {
-    return noise_log_likelihood(residual.cwiseProduct(rows_.counts()), rows_.logs());
+    return noise_log_likelihood(residual.cwiseProduct(rows_.counts()), rows_);
   }
   Evidence evidence_of(const Eigen::VectorXd& residual, const Eigen::VectorXd& noise) const {
     Evidence evidence(residual, blocks());
-    evidence.whiten(noise_of(noise.cwiseProduct(rows_.counts()), rows_.logs()));
+    evidence.whiten(noise_of(noise.cwiseProduct(rows_.counts()), rows_));
     return evidence;
   }
 
@@ -114,6 +114,12 @@ class Description {
     auto refined = refine_in_closed_loop(std::move(findings), description.terms, responses_, rows_, target_ - aside,
                                          std::move(left), context_);
     description.findings = std::move(refined.findings);
+    for (std::size_t k = 0; k < description.terms.size(); ++k) {
+      auto& term = description.terms[k];
+      term.in_runs.reset();
+      if (refined.response && described_by_runs(term))
+        term.in_runs = {description.findings[k].row(), *refined.response};
+    }
     return refined.left;
   }
 

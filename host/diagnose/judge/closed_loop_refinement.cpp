@@ -31,11 +31,10 @@ class ClosedLoopFit {
       : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
     for (std::size_t k = 0; k < findings_.size(); ++k) {
       const auto& term = terms[k];
-      // What runs in silence do not know: a phase of each record, or a response under disturbances.
-      if (const auto& candidate = candidates()[term.candidate]; candidate.per_record || candidate.replays)
-        target_ -= weighted_columns(rows, context, candidate, term.shape, term.coefficients);
-      else
+      if (described_by_runs(term))
         free_parameters(k);
+      else
+        target_ -= weighted_columns(rows, context, candidates()[term.candidate], term.shape, term.coefficients);
     }
   }
 
@@ -44,11 +43,14 @@ class ClosedLoopFit {
   // after them by the noise that the first have left.
   double run() {
     if (free_.empty()) return -std::numeric_limits<double>::infinity();
+    auto first = around(start());
+    first.push_back(start());
+    foresee(first);
     const Eigen::VectorXd began = simulated(start());
     Place place{start(), began, {}};
     place.slopes = slopes_at(place.at, began);
     step_on(place);
-    whitening_ = noise_of(target_ - place.force, rows_.logs());
+    whitening_ = noise_of(target_ - place.force, rows_);
     step_on(place);
     const double before = likelihood(target_ - began), after = likelihood(target_ - place.force);
     left_ = target_ - (after > before ? place.force : began);
@@ -62,8 +64,7 @@ class ClosedLoopFit {
  private:
   // Of a residual (N, of the rows), with the noise that it is itself.
   double likelihood(const Eigen::VectorXd& residual) const {
-    return residual.allFinite() ? noise_log_likelihood(residual, rows_.logs())
-                                : -std::numeric_limits<double>::infinity();
+    return residual.allFinite() ? noise_log_likelihood(residual, rows_) : -std::numeric_limits<double>::infinity();
   }
   // Values of what is free, the force (N, of the rows) that the machine makes of them, and its slopes.
   struct Place {
@@ -76,6 +77,7 @@ class ClosedLoopFit {
     double left = square(target_ - place.force);
     for (int step = 0; step < most_steps; ++step) {
       Eigen::VectorXd way = evidence_of(place).fit(all()).coefficients;
+      foresee(halved(place.at, way));
       double gained = 0.0;
       for (int half = 0; half <= halvings && gained <= 0.0; ++half, way *= 0.5) {
         const Eigen::VectorXd next = place.at + way, next_force = simulated(next);
@@ -119,6 +121,7 @@ class ClosedLoopFit {
   Eigen::VectorXd simulated(const Eigen::VectorXd& at) {
     const auto effects = effects_at(at);
     try {
+      response_.foresee(rows_.motions(), {&effects, 1});
       return rows_.stacked([&](const Motion& motion) { return response_.together(motion, effects); });
     } catch (const sim::EffectError&) {
       return Eigen::VectorXd::Constant(rows_.rows(), std::numeric_limits<double>::infinity());
@@ -136,18 +139,47 @@ class ClosedLoopFit {
         square += at[static_cast<Eigen::Index>(k)] * at[static_cast<Eigen::Index>(k)];
     return std::sqrt(square);
   }
-  // By differences over a standard error, within 1e-5 to a tenth of its size; none where the effect cannot have it.
+  // A standard error of a parameter, within 1e-5 to a tenth of its size.
+  double step_of(Eigen::Index i, const Eigen::VectorXd& at) const {
+    const auto& free = free_[static_cast<std::size_t>(i)];
+    const double error = findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
+    const double size = size_of(i, at);
+    const double by = std::isfinite(error) && error > 0.0 ? error : 0.01 * size;
+    return size > 0.0 ? std::clamp(by, 1e-5 * size, 0.1 * size) : by;
+  }
+  Eigen::VectorXd moved(const Eigen::VectorXd& at, Eigen::Index i) const {
+    Eigen::VectorXd there = at;
+    there[i] += step_of(i, at);
+    return there;
+  }
+  // The places that a step may lead to.
+  static std::vector<Eigen::VectorXd> halved(const Eigen::VectorXd& at, Eigen::VectorXd way) {
+    std::vector<Eigen::VectorXd> places;
+    for (int half = 0; half <= halvings; ++half, way *= 0.5) places.emplace_back(at + way);
+    return places;
+  }
+  // Those from which the slopes are told.
+  std::vector<Eigen::VectorXd> around(const Eigen::VectorXd& at) const {
+    std::vector<Eigen::VectorXd> places;
+    for (Eigen::Index i = 0; i < at.size(); ++i) places.push_back(moved(at, i));
+    return places;
+  }
+  // Simulates at once what simulated() will be asked for.
+  void foresee(const std::vector<Eigen::VectorXd>& places) {
+    std::vector<std::vector<machine::Effect>> sets;
+    for (const auto& at : places) sets.push_back(effects_at(at));
+    try {
+      response_.foresee(rows_.motions(), sets);
+    } catch (const sim::EffectError&) {  // of one of them: each is asked by itself
+    }
+  }
+  // By differences; none where the effect cannot have the value.
   Eigen::MatrixXd slopes_at(const Eigen::VectorXd& at, const Eigen::VectorXd& force) {
+    foresee(around(at));
     Eigen::MatrixXd slopes(rows_.rows(), at.size());
     for (Eigen::Index i = 0; i < at.size(); ++i) {
-      const auto& free = free_[static_cast<std::size_t>(i)];
-      const double error = findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
-      const double size = size_of(i, at);
-      double by = std::isfinite(error) && error > 0.0 ? error : 0.01 * size;
-      if (size > 0.0) by = std::clamp(by, 1e-5 * size, 0.1 * size);
-      Eigen::VectorXd moved = at;
-      moved[i] += by;
-      const auto there = simulated(moved);
+      const double by = step_of(i, at);
+      const auto there = simulated(moved(at, i));
       slopes.col(i) = there.allFinite() ? Eigen::VectorXd((there - force) / by) : Eigen::VectorXd::Zero(rows_.rows());
     }
     return slopes;
@@ -191,17 +223,23 @@ class ClosedLoopFit {
 
 }  // namespace
 
+// What runs in silence do not know: a phase of each record, or a response under disturbances.
+bool described_by_runs(const Term& term) {
+  const auto& candidate = candidates()[term.candidate];
+  return !candidate.outside() && !candidate.per_record && !candidate.replays;
+}
+
 ClosedLoopRefinement refine_in_closed_loop(std::vector<Finding> findings, std::span<const Term> terms,
                                            std::span<EffectResponse> responses, const LogRows& rows,
                                            const Eigen::VectorXd& target, Eigen::VectorXd left,
                                            const SearchContext& context) {
   ClosedLoopRefinement best{findings, std::move(left)};
-  double most = noise_log_likelihood(best.left, rows.logs());
-  for (auto& response : responses) {
-    ClosedLoopFit fit(findings, terms, response, rows, target, context);
+  double most = noise_log_likelihood(best.left, rows);
+  for (std::size_t k = 0; k < responses.size(); ++k) {
+    ClosedLoopFit fit(findings, terms, responses[k], rows, target, context);
     if (const double likelihood = fit.run(); likelihood > most) {
       most = likelihood;
-      best = {fit.findings(), fit.left()};
+      best = {fit.findings(), fit.left(), k};
     }
   }
   return best;

@@ -97,14 +97,45 @@ Eigen::VectorXd force_of_term(const LogRows& rows, const SearchContext& context,
   return force;
 }
 
+// The effects of the terms that runs describe, but for the one at `left_out`.
+std::vector<machine::Effect> effects_in_runs(std::span<const Term> terms, std::size_t left_out) {
+  std::vector<machine::Effect> effects;
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (k != left_out && terms[k].in_runs) effects.push_back(terms[k].in_runs->effect);
+  return effects;
+}
+
+// The forces of the terms that runs describe, each with the others in the machine; `rest` loses all of them.
+void take_terms_in_runs(const LogRows& rows, std::span<EffectResponse> responses, std::span<const Term> terms,
+                        std::vector<Eigen::VectorXd>& forces, Eigen::VectorXd& rest) {
+  const auto first = std::find_if(terms.begin(), terms.end(), [](const Term& term) { return term.in_runs; });
+  if (first == terms.end()) return;
+  // One description has one response.
+  auto& response = responses[first->in_runs->response];
+  std::vector<std::vector<machine::Effect>> sets{effects_in_runs(terms, terms.size())};
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (terms[k].in_runs) sets.push_back(effects_in_runs(terms, k));
+  response.foresee(rows.motions(), sets);
+  const auto together = [&](const std::vector<machine::Effect>& effects) -> Eigen::VectorXd {
+    if (effects.empty()) return Eigen::VectorXd::Zero(rows.rows());
+    return rows.stacked([&](const Motion& motion) { return response.together(motion, effects); });
+  };
+  const Eigen::VectorXd all = together(sets.front());
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (terms[k].in_runs) forces[k] = all - together(effects_in_runs(terms, k));
+  rest -= all;
+}
+
 // The terms' forces, which `rest` loses.
-std::vector<Eigen::VectorXd> take_terms(const LogRows& rows, const SearchContext& context, std::span<const Term> terms,
+std::vector<Eigen::VectorXd> take_terms(const LogRows& rows, const SearchContext& context,
+                                        std::span<EffectResponse> responses, std::span<const Term> terms,
                                         Eigen::VectorXd& rest) {
-  // Phases of ripples are found with all other terms in place.
   std::vector<Eigen::VectorXd> forces(terms.size());
+  take_terms_in_runs(rows, responses, terms, forces, rest);
+  // Phases of ripples are found with all other terms in place.
   for (const bool periodic : {false, true})
     for (std::size_t k = 0; k < terms.size(); ++k) {
-      if (candidates()[terms[k].candidate].periodic != periodic) continue;
+      if (terms[k].in_runs || candidates()[terms[k].candidate].periodic != periodic) continue;
       forces[k] = force_of_term(rows, context, terms[k], rest);
       rest -= forces[k];
     }
@@ -143,23 +174,24 @@ std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::
 Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                               std::span<const Term> terms) {
   Eigen::VectorXd rest = target;
-  take_terms(rows, context, terms, rest);
+  take_terms(rows, context, {}, terms, rest);
   return rest;
 }
 
-HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
-                                 std::span<const Term> terms, std::uint64_t seed) {
-  Eigen::VectorXd rest = target;
-  const auto forces = take_terms(rows, context, terms, rest);
+HeldOutFigures evaluate_held_out(const HeldOutData& data, std::span<const Term> terms) {
+  const auto& rows = data.rows;
+  const auto& context = data.context;
+  Eigen::VectorXd rest = data.target;
+  const auto forces = take_terms(rows, context, data.responses, terms, rest);
   bool constant = true, coulomb = true;
   for (const auto& term : terms) {
     constant = constant && !candidates()[term.candidate].names_constant;
     coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
   }
   const Nuisances nuisances(rows, context, constant, coulomb);
-  const Eigen::VectorXd baseline = nuisances.without(target), extended = nuisances.without(rest);
+  const Eigen::VectorXd baseline = nuisances.without(data.target), extended = nuisances.without(rest);
   HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
-  const Whitening whitening(extended, rows.logs());
+  const Whitening whitening(extended, rows);
   const auto blocks = blocks_of_rows(rows);
   const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
     const Eigen::VectorXd force = before - after;
@@ -177,7 +209,7 @@ HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& tar
     if (candidate.along_stroke) after.array() *= recorded, before.array() *= recorded;
     HoldoutGain gain;
     gain.force_rms_ratio = rms(after) / rms(before);
-    gain.ci95 = ratio_interval(after, before, rows, seed + k);
+    gain.ci95 = ratio_interval(after, before, rows, data.seed + k);
     figures.gains.push_back(gain);
     figures.held_out_amplitudes.push_back(held_out_amplitude(before, after));
   }

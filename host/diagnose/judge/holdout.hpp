@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "host/diagnose/judge/held_out_amplitude.hpp"
+#include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/search/search.hpp"
 
 namespace stiction::host {
@@ -25,10 +26,18 @@ struct HeldOutFigures {
 Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
                               std::span<const Term> terms);
 
-// `target`: residual force of the held-out rows. Intervals: bootstrap over blocks of rows, from `seed`. `context`: of
-// the search; `terms`: what it found.
-HeldOutFigures evaluate_held_out(const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context,
-                                 std::span<const Term> terms, std::uint64_t seed);
+// Held-out data with what a search was over.
+struct HeldOutData {
+  const LogRows& rows;
+  const Eigen::VectorXd& target;        // N, their residual force
+  const SearchContext& context;         // of the search
+  std::span<EffectResponse> responses;  // of these records; none where they cannot run
+  std::uint64_t seed;                   // of the bootstrap
+};
+
+// Of the `terms` that a search over other records found; the force of one that runs describe (Term::in_runs) is that of
+// runs of these records. Intervals: bootstrap over blocks of rows.
+HeldOutFigures evaluate_held_out(const HeldOutData& data, std::span<const Term> terms);
 
 // 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows. `after` and `before`:
 // residual force in the `rows` (N) with the causes and without them; `seed` of the bootstrap.

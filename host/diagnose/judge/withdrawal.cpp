@@ -29,7 +29,7 @@ std::vector<Term> with_maps(std::vector<Term> terms, std::span<const Term> maps)
 }
 
 HeldOutFigures figures_of(const HeldOutData& data, const std::vector<Term>& terms, std::span<const Term> maps) {
-  return evaluate_held_out(data.rows, data.target, data.context, with_maps(terms, maps), data.seed);
+  return evaluate_held_out(data, with_maps(terms, maps));
 }
 
 }  // namespace

@@ -9,14 +9,6 @@
 
 namespace stiction::host {
 
-// Held-out data with what a search was over.
-struct HeldOutData {
-  const LogRows& rows;
-  const Eigen::VectorXd& target;  // N, their residual force
-  const SearchContext& context;   // of the search
-  std::uint64_t seed;             // of the bootstrap
-};
-
 struct Withdrawn {
   std::size_t candidate;
   std::string why;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "host/diagnose/record/followed_set_points.hpp"
@@ -43,27 +44,24 @@ Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& a
   return known;
 }
 
-// The run without noise of the logs with set-points a `part` of an encoder's increment further on, taken back by it;
-// empty where it goes another way, by `how`.
-std::vector<Log> run_elsewhere(const machine::Machine& machine, std::size_t axis, std::vector<Log> driven, double part,
-                               Following how) {
-  const auto& model = machine.axes[axis];
-  const double by = part * model.encoder.increment;
-  for (auto& log : driven)
-    for (double& x : channels_of(log, model).x_set) x += by;
-  auto run = without_noise(machine, axis, driven, how).replayed;
-  for (auto& log : run)
-    for (double& x : log.axes.front().x) x -= by;
-  return run;
-}
-
-// Those whose residual is taken off the record's; none on an axis without increments.
+// The runs without noise of the logs with set-points these `parts` of an encoder's increment further on, taken back by
+// them; empty where they go another way, by `how`. None on an axis without increments.
 std::vector<std::vector<Log>> runs_elsewhere(const machine::Machine& machine, std::size_t axis,
-                                             const std::vector<Log>& driven, Following how) {
-  std::vector<std::vector<Log>> runs;
-  if (!(machine.axes[axis].encoder.increment > 0.0)) return runs;
-  for (const double part : parts_of_residual)
-    if (auto run = run_elsewhere(machine, axis, driven, part, how); !run.empty()) runs.push_back(std::move(run));
+                                             const std::vector<Log>& driven, std::span<const double> parts,
+                                             Following how) {
+  const auto& model = machine.axes[axis];
+  if (!(model.encoder.increment > 0.0)) return {};
+  std::vector<std::vector<Log>> further;
+  for (const double part : parts) {
+    auto logs = driven;
+    for (auto& log : logs)
+      for (double& x : channels_of(log, model).x_set) x += part * model.encoder.increment;
+    further.push_back(std::move(logs));
+  }
+  auto runs = runs_without_noise(machine, axis, further, how);
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    for (auto& log : runs[k])
+      for (double& x : log.axes.front().x) x -= parts[k] * model.encoder.increment;
   return runs;
 }
 
@@ -83,7 +81,7 @@ void measure(Record& record, const machine::AxisModel& axis, const SignalSetting
 
 std::vector<std::vector<Log>> runs_of_target(const Record& record, const machine::Machine& machine, std::size_t axis) {
   const bool elsewhere = !record.simulated_elsewhere.empty();
-  auto runs = elsewhere ? runs_elsewhere(machine, axis, record.driven, Following::as_recorded)
+  auto runs = elsewhere ? runs_elsewhere(machine, axis, record.driven, parts_of_residual, Following::as_recorded)
                         : std::vector<std::vector<Log>>{without_noise(machine, axis, record.driven).replayed};
   std::erase_if(runs, [](const auto& run) { return run.empty(); });
   if (!runs.empty()) return runs;
@@ -97,9 +95,18 @@ std::vector<Log> drive(Record& record, const machine::Machine& machine, std::siz
   record.simulated = std::move(without.replayed);
   record.simulated_elsewhere.clear();
   record.moved_elsewhere.clear();
-  if (!record.simulated.empty()) record.simulated_elsewhere = runs_elsewhere(machine, axis, record.driven, how);
-  if (!record.simulated_elsewhere.empty())
-    record.moved_elsewhere = run_elsewhere(machine, axis, record.driven, part_of_columns, how);
+  if (!record.simulated.empty()) {
+    std::vector<double> parts(parts_of_residual.begin(), parts_of_residual.end());
+    parts.push_back(part_of_columns);
+    auto runs = runs_elsewhere(machine, axis, record.driven, parts, how);
+    if (!runs.empty()) {
+      record.moved_elsewhere = std::move(runs.back());
+      runs.pop_back();
+    }
+    std::erase_if(runs, [](const auto& run) { return run.empty(); });
+    record.simulated_elsewhere = std::move(runs);
+  }
+  if (record.simulated_elsewhere.empty()) record.moved_elsewhere.clear();
   if (record.moved_elsewhere.empty()) record.simulated_elsewhere.clear();
   return std::move(without.motion);
 }

@@ -22,11 +22,12 @@ Eigen::VectorXd about_means(Eigen::VectorXd residual, std::span<const std::size_
 
 }  // namespace
 
-RedrawnResidual::RedrawnResidual(const Eigen::VectorXd& residual, std::span<const std::size_t> logs,
-                                 const Eigen::VectorXd& time, double period)
-    : period_(period) {
+RedrawnResidual::RedrawnResidual(const Eigen::VectorXd& residual, const NoiseRows& rows, const Eigen::VectorXd& time,
+                                 double period)
+    : first_(rows.logs.begin(), rows.logs.end()), period_(period) {
+  const auto logs = rows.logs;
   const Eigen::VectorXd noise = about_means(residual, logs);
-  spectrum_ = Whitening(noise, logs);
+  spectrum_ = Whitening(noise, rows);
   const Eigen::VectorXd white = spectrum_(noise);
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(logs[k]);
@@ -44,7 +45,7 @@ std::vector<double> RedrawnResidual::drawn(std::size_t log, std::span<const doub
   Eigen::VectorXd white = innovations;
   for (double& innovation : white)
     if (negative(random)) innovation = -innovation;
-  const Eigen::VectorXd force = spectrum_.coloured(white);
+  const Eigen::VectorXd force = spectrum_.coloured(white, first_[log]);
   std::vector<double> values;
   for (const double time : t) {
     const double place = std::clamp((time - begins_[log]) / period_, 0.0, static_cast<double>(force.size() - 1));

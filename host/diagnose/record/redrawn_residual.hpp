@@ -15,10 +15,9 @@ namespace stiction::host {
 
 class RedrawnResidual {
  public:
-  // `residual`: N, in rows of several logs, 0 in those that do not count, `period` s apart; `logs`: first row of each;
-  // `time`: s, of each row, from its log's start.
-  RedrawnResidual(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, const Eigen::VectorXd& time,
-                  double period);
+  // `residual`: N, in `rows`, 0 in those that do not count, `period` s apart; `time`: s, of each row, from its log's
+  // start.
+  RedrawnResidual(const Eigen::VectorXd& residual, const NoiseRows& rows, const Eigen::VectorXd& time, double period);
 
   // N at the times `t` (s, rising) of a `log`: one draw of many, by `seed`; linear between rows.
   std::vector<double> drawn(std::size_t log, std::span<const double> t, std::uint64_t seed) const;
@@ -26,6 +25,7 @@ class RedrawnResidual {
  private:
   Whitening spectrum_;
   std::vector<Eigen::VectorXd> innovations_;  // N, of each log
+  std::vector<std::size_t> first_;            // row of each log
   std::vector<double> begins_;                // s, of its first row
   double period_;                             // s
 };

@@ -32,12 +32,9 @@ std::vector<double> measured_feeds(const machine::Machine& machine) {
 // Largest error and current of both axes, by feed.
 using Laps = std::map<double, std::array<RowFigures, 2>>;
 
-Laps simulated(const machine::Machine& machine) {
+Laps simulated(const machine::Machine& machine, ReferenceCircles& circles) {
   Laps laps;
-  for (const double feed : measured_feeds(machine)) {
-    const auto run = reference_circle(machine, feed);
-    for (std::size_t k = 0; k < 2; ++k) laps[feed][k] = {run.axes[k].peak_error, run.axes[k].peak_current};
-  }
+  for (const double feed : measured_feeds(machine)) laps[feed] = circles.at(machine, feed);
   return laps;
 }
 
@@ -204,27 +201,28 @@ void add_findings(const machine::Machine& machine, const ReferenceExtension& ext
 }
 
 // All findings but those of which `leave_away` is true.
-Laps simulated_without(const machine::Machine& machine, const Verdict& verdict,
+Laps simulated_without(const machine::Machine& machine, const Verdict& verdict, ReferenceCircles& circles,
                        const std::function<bool(const Finding&)>& leave_away) {
   auto without = machine;
   for (auto& axis : without.axes)
     for (const auto& finding : verdict.findings)
       if (finding.axis == axis.name && !leave_away(finding)) axis.effects.push_back(finding.row());
-  return simulated(without);
+  return simulated(without, circles);
 }
 
 // What each row loses without each finding, and what that gains. The parts of a borrowed law came from one number and
 // are judged together. Both axes' findings of an effect are left away at once: no axis feels the other.
-void add_shares(const machine::Machine& machine, const ReferenceExtension& extension, Verdict& verdict,
-                const std::function<void()>& progress) {
+void add_shares(const machine::Machine& machine, const ReferenceExtension& extension, ReferenceCircles& circles,
+                Verdict& verdict, const std::function<void()>& progress) {
   auto& rows = verdict.reference->rows;
   const auto is_contact = [](const Finding& f) { return sim::is_a<sim::PreslidingHysteresis>(f.effect); };
-  const auto without_law = simulated_without(machine, verdict, std::not_fn(is_contact));
+  const auto without_law = simulated_without(machine, verdict, circles, std::not_fn(is_contact));
   std::map<sim::EffectId, Laps> without;
   for (auto& finding : verdict.findings) {
     const auto effect = finding.effect;
     if (!without.contains(effect)) {
-      without[effect] = simulated_without(machine, verdict, [&](const Finding& f) { return f.effect == effect; });
+      without[effect] =
+          simulated_without(machine, verdict, circles, [&](const Finding& f) { return f.effect == effect; });
       if (progress) progress();
     }
     const auto k = static_cast<std::size_t>(finding.axis == machine.axes[0].name ? 0 : 1);
@@ -262,12 +260,13 @@ void add_figures(const machine::Machine& machine, Verdict& verdict) {
 // sensitivities of all rows to a tenth of each scale.
 class LeftOut {
  public:
-  LeftOut(const machine::Machine& machine, ReferenceExtension extension, const Laps& at)
+  LeftOut(const machine::Machine& machine, ReferenceExtension extension, const Laps& at, ReferenceCircles& circles)
       : machine_(machine),
         start_(std::move(extension)),
         at_(at),
-        force_(changed(&AxisExtension::force)),
-        displacement_(changed(&AxisExtension::displacement)) {}
+        circles_(circles),
+        force_(changed(&AxisExtension::force, [](const AxisExtension& axis) { return !axis.own_rows; })),
+        displacement_(changed(&AxisExtension::displacement, [](const AxisExtension& axis) { return axis.contact; })) {}
 
   // Rows of `feed`, predicted from those of all others.
   std::array<RowFigures, 2> predict(double feed) const {
@@ -282,8 +281,7 @@ class LeftOut {
       const auto extended = extended_by(machine_, extension);
       for (auto& [each, lap] : laps) {
         if (step == 0 ? each == feed : each != feed) continue;  // the left out row is wanted only at the end
-        const auto run = reference_circle(extended, each);
-        for (std::size_t k = 0; k < 2; ++k) lap[k] = {run.axes[k].peak_error, run.axes[k].peak_current};
+        lap = circles_.at(extended, each);
       }
     }
     return laps.at(feed);
@@ -292,10 +290,11 @@ class LeftOut {
  private:
   static constexpr double tenth = 0.1;
 
-  Laps changed(double AxisExtension::*scale) const {
+  Laps changed(double AxisExtension::*scale, bool (*counts)(const AxisExtension&)) const {
     auto extension = start_;
-    for (auto& axis : extension.axes) axis.*scale *= std::exp(tenth);
-    return simulated(extended_by(machine_, extension));
+    for (auto& axis : extension.axes)
+      if (counts(axis)) axis.*scale *= std::exp(tenth);
+    return simulated(extended_by(machine_, extension), circles_);
   }
 
   // Of the scale's logarithm, at most a factor of two.
@@ -315,12 +314,13 @@ class LeftOut {
   const machine::Machine& machine_;
   ReferenceExtension start_;
   const Laps& at_;
+  ReferenceCircles& circles_;
   Laps force_, displacement_;
 };
 
 void leave_each_feed_out(const machine::Machine& machine, const ReferenceExtension& extension, const Laps& after,
-                         ReferenceRows& reference, const std::function<void()>& progress) {
-  const LeftOut left_out(machine, extension, after);
+                         ReferenceCircles& circles, ReferenceRows& reference, const std::function<void()>& progress) {
+  const LeftOut left_out(machine, extension, after, circles);
   for (const double feed : measured_feeds(machine)) {
     const auto predicted = left_out.predict(feed);
     for (auto& row : reference.rows)
@@ -335,19 +335,20 @@ void leave_each_feed_out(const machine::Machine& machine, const ReferenceExtensi
 Verdict diagnose_reference(const machine::Machine& machine, const std::function<void()>& progress) {
   if (machine.axes.size() != 2)
     throw MissingRows(fmt::format("found a machine with {} axes; expected 2, of a circle", machine.axes.size()));
-  const auto extension = extend_by_rows(machine, calibration_feed);
+  ReferenceCircles circles;
+  const auto extension = extend_by_rows(machine, calibration_feed, circles);
   if (progress) progress();
-  const auto before = simulated(machine);
-  const auto after = simulated(extended_by(machine, extension));
+  const auto before = simulated(machine, circles);
+  const auto after = simulated(extended_by(machine, extension), circles);
   Verdict verdict;
   verdict.machine = machine.id + ".toml";
   add_findings(machine, extension, verdict);
   verdict.reference = ReferenceRows{
       "circle", machine.axes.front().friction.use, rows_of(machine, extension.training_feed, before, after), {}, {}};
   verdict.reference->unused = scores_of(verdict.reference->rows, false);
-  add_shares(machine, extension, verdict, progress);
+  add_shares(machine, extension, circles, verdict, progress);
   add_figures(machine, verdict);
-  leave_each_feed_out(machine, extension, after, *verdict.reference, progress);
+  leave_each_feed_out(machine, extension, after, circles, *verdict.reference, progress);
   verdict.rejected = rejection_words(machine, verdict);
   verdict.notes = note_words(extension);
   add_reference_charts(verdict, machine, extension);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "firmware/machine/configuration/double_signals.hpp"
@@ -50,7 +51,8 @@ double displacement_at(const PreslidingCurve& curve, double force) {
 // Scales of all axes at once, as one circle moves both.
 class Scales {
  public:
-  Scales(const machine::Machine& machine, ReferenceExtension& extension) : machine_(machine), extension_(extension) {
+  Scales(const machine::Machine& machine, ReferenceExtension& extension, ReferenceCircles& circles)
+      : machine_(machine), extension_(extension), circles_(circles) {
     for (const auto& axis : machine.axes) {
       const auto* row = measured_row(machine, axis.name, extension.training_feed);
       if (row == nullptr)
@@ -69,32 +71,27 @@ class Scales {
   }
 
  private:
-  struct Lap {
-    double error, current;
-  };
+  using Laps = std::array<RowFigures, 2>;
 
-  std::vector<Lap> simulate() const {
-    const auto run = reference_circle(extended_by(machine_, extension_), extension_.training_feed);
-    std::vector<Lap> laps;
-    for (std::size_t k = 0; k < wanted_.size(); ++k) laps.push_back({run.axes[k].peak_error, run.axes[k].peak_current});
-    return laps;
-  }
+  Laps simulate() const { return circles_.at(extended_by(machine_, extension_), extension_.training_feed); }
 
   // How the current grows with the scale, then Newton's steps: the current is close to linear in it.
   void find_forces() {
     auto laps = simulate();
     slopes_.assign(wanted_.size(), 0.0);
-    for (auto& axis : extension_.axes) axis.force *= 1.1;
+    for (auto& axis : extension_.axes)
+      if (!axis.own_rows) axis.force *= 1.1;
     const auto more = simulate();
     for (std::size_t k = 0; k < slopes_.size(); ++k) {
       auto& axis = extension_.axes[k];
+      if (axis.own_rows) continue;
       axis.force /= 1.1;
       slopes_[k] = (more[k].current - laps[k].current) / (0.1 * axis.force);
     }
     for (int i = 0; i < corrections; ++i) correct_forces(simulate());
   }
 
-  void correct_forces(const std::vector<Lap>& laps) {
+  void correct_forces(const Laps& laps) {
     for (std::size_t k = 0; k < laps.size(); ++k) {
       auto& axis = extension_.axes[k];
       if (axis.own_rows) continue;
@@ -163,7 +160,8 @@ class Scales {
 
   const machine::Machine& machine_;
   ReferenceExtension& extension_;
-  std::vector<Lap> wanted_;
+  ReferenceCircles& circles_;
+  std::vector<RowFigures> wanted_;
   std::vector<double> slopes_;  // A, of the current over the scale of the friction
 };
 
@@ -232,7 +230,7 @@ machine::Machine extended_by(machine::Machine machine, const ReferenceExtension&
   return machine;
 }
 
-ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed) {
+ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed, ReferenceCircles& circles) {
   ReferenceExtension extension;
   extension.training_feed = training_feed;
   const auto source = std::find_if(machine.axes.begin(), machine.axes.end(),
@@ -253,7 +251,7 @@ ReferenceExtension extend_by_rows(const machine::Machine& machine, double traini
     own.distance = displacement_at(contact, 0.9 * creeping);
     extension.axes.push_back(own);
   }
-  Scales(machine, extension).find();
+  Scales(machine, extension, circles).find();
   return extension;
 }
 

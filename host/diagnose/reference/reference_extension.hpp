@@ -6,6 +6,7 @@
 
 #include "firmware/machine/model/effect.hpp"
 #include "firmware/machine/model/machine.hpp"
+#include "host/diagnose/reference/reference_circles.hpp"
 #include "host/diagnose/reference/sliding_law.hpp"
 #include "sim/experiment/circle_result.hpp"
 
@@ -37,14 +38,16 @@ struct ReferenceExtension {
   std::vector<AxisExtension> axes;  // in the machine's order
 };
 
-// Measured circles of one lap; cheap enough (about 10 ms an axis-second of motion) to run for every guess.
+// The circle of a measured row, with its lap: `machine`, of two axes; `feed`, m/s.
 sim::CircleRun reference_circle(const machine::Machine& machine, double feed);
 
 // The friction law that an axis of the file has, without Stribeck's fall. Throws MissingRows for a model without one.
 SlidingLaw file_law(const machine::AxisModel& axis);
 
-// Throws MissingRows where rows are missing or no scale gives the training row.
-ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed);
+// `machine`: with the measured rows; `training_feed`: m/s, of the circle that gives the scales; `circles`: of this
+// machine, which keeps those that were driven. Throws MissingRows where rows are missing or no scale gives the training
+// row.
+ReferenceExtension extend_by_rows(const machine::Machine& machine, double training_feed, ReferenceCircles& circles);
 
 // The effects of an axis of the extension, in the order coulomb, viscous, rise, contact; only those that are named.
 // `machine`: of the file.

@@ -23,15 +23,15 @@ constexpr int sizing_rounds = 2;         // in which the force that is drawn fin
 Eigen::VectorXd sized(const SearchContext& context, Eigen::VectorXd noise) {
   const double wanted = noise.norm();
   for (int round = 0; round < sizing_rounds; ++round) {
-    const auto made = context.exact_records(noise)(0);
-    if (!made || !(made->target.norm() > wanted)) break;
-    noise *= wanted / made->target.norm();
+    const auto made = context.exact_records(noise)(0, 1);
+    if (made.empty() || !(made.front().target.norm() > wanted)) break;
+    noise *= wanted / made.front().target.norm();
   }
   return noise;
 }
 
 struct Limit {
-  double odds, error;  // with its standard error
+  double median, odds, error;  // the last the standard error of the odds
 };
 
 // Log odds that are exceeded with a probability of `chance`: behind the median they fall off exponentially, as twice
@@ -42,20 +42,20 @@ Limit exceeded_with(double chance, std::vector<double> odds) {
   const auto count = static_cast<double>(odds.end() - middle);
   const double above = std::accumulate(middle, odds.end(), 0.0) / count - *middle;
   const double behind = above * std::log(0.5 / chance);
-  return {*middle + behind, behind / std::sqrt(count)};
+  return {*middle, *middle + behind, behind / std::sqrt(count)};
 }
 
 }  // namespace
 
 Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& noise)
     : drawn_(context.exact_records(sized(context, noise))) {
-  kept_ = draw(drawn_, 0, records_kept);
+  kept_ = drawn_(0, records_kept);
   if (kept_.size() < fewest_drawn) kept_.clear();
   records_ = kept_.size();
 }
 
-std::vector<double> Calibration::prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
-                                        const std::vector<double>& own) {
+std::vector<Calibration::Price> Calibration::prices(
+    const std::function<std::vector<double>(const ExactRecord&)>& odds_in, const std::vector<double>& own) {
   std::vector<std::vector<double>> odds(own.size());
   const auto look_at = [&](const ExactRecord& record) {
     const auto of_record = odds_in(record);
@@ -64,21 +64,22 @@ std::vector<double> Calibration::prices(const std::function<std::vector<double>(
   };
   for (const auto& record : kept_) look_at(record);
   const double chance = level_of_design / static_cast<double>(candidates().size());
-  std::vector<double> prices(own.size(), 0.0);
+  std::vector<Price> prices(own.size());
   // Whether the records that were drawn tell each name's side.
   const auto told = [&] {
     bool all = true;
     for (std::size_t k = 0; k < odds.size(); ++k) {
       if (odds[k].size() < fewest_drawn) continue;
       const auto limit = exceeded_with(chance, odds[k]);
-      prices[k] = std::max(limit.odds - sure, 0.0);
+      prices[k].limit = std::max(limit.odds - sure, 0.0);
+      prices[k].typical = std::clamp(limit.median, 0.0, prices[k].limit);
       all = all && (own[k] < sure || std::abs(own[k] - limit.odds) > margin * limit.error);
     }
     return all;
   };
   std::size_t looked_at = kept_.size();
   for (std::size_t drawn = records_kept; !told() && !kept_.empty() && drawn < most_drawn; drawn += records_kept)
-    for (const auto& record : draw(drawn_, drawn, drawn + records_kept)) look_at(record), ++looked_at;
+    for (const auto& record : drawn_(drawn, drawn + records_kept)) look_at(record), ++looked_at;
   records_ = std::max(records_, looked_at);
   return prices;
 }

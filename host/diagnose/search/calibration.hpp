@@ -17,10 +17,15 @@ class Calibration {
   Calibration(const SearchContext& context, const Eigen::VectorXd& noise);
 
   std::size_t records() const { return records_; }  // that were looked at at most; 0: none can be simulated
-  // Nats, 0 and more, of each name of which `odds_in` tells the log odds in a record; `own`: in the record itself. More
-  // records are drawn where these do not tell on which side of its price a name is.
-  std::vector<double> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
-                             const std::vector<double>& own);
+  // Nats, 0 and more, of one name: what records of the exact machine say for it in the median, and what one in a
+  // hundred exceeds with any name.
+  struct Price {
+    double typical = 0.0, limit = 0.0;
+  };
+  // Of each name of which `odds_in` tells the log odds in a record; `own`: in the record itself. More records are drawn
+  // where these do not tell on which side of its limit a name is.
+  std::vector<Price> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
+                            const std::vector<double>& own);
 
  private:
   ExactRecords drawn_;

@@ -126,7 +126,7 @@ Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
 
 // By the noise of the rows that count; those of a log that is left out weigh nothing, so that nothing is learned there.
 Whitening Dictionary::noise_in(const Eigen::VectorXd& left) const {
-  auto noise = noise_of(left.cwiseProduct(counts_), rows_.logs());
+  auto noise = noise_of(left.cwiseProduct(counts_), rows_);
   if (left_out_) noise.weigh(noise.weight().cwiseProduct(counts_));
   return noise;
 }
@@ -194,7 +194,7 @@ Posterior Dictionary::posterior(const ActiveSet& set) const {
 double Dictionary::with_own_noise(const ActiveSet& set) const {
   const auto of_set = posterior(set);
   const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(counts_);
-  double odds = noise_log_likelihood(left, rows_.logs()) + of_set.price();
+  double odds = noise_log_likelihood(left, rows_) + of_set.price();
   for (const auto* atom : set) odds += atom->log_prior;
   return odds;
 }
@@ -202,7 +202,7 @@ double Dictionary::with_own_noise(const ActiveSet& set) const {
 double Dictionary::with_own_spectrum(const ActiveSet& set) const {
   const auto of_set = posterior(set);
   const Eigen::VectorXd left = evidence_.residual(of_set.columns(), of_set.weights()).cwiseProduct(counts_);
-  double odds = noise_log_likelihood(left, rows_.logs(), evidence_.whitening()) + of_set.price();
+  double odds = noise_log_likelihood(left, rows_, evidence_.whitening()) + of_set.price();
   for (const auto* atom : set) odds += atom->log_prior;
   return odds;
 }

@@ -260,22 +260,23 @@ Dictionary::ActiveSet Search::searched_from(bool absorbed) {
   return set;
 }
 
-// Drops what is not worth its price.
+// Drops what is not worth its price and what it has to be worth beyond that.
 void Search::prune(ActiveSet& set) {
   for (;;) {
     const auto left = leftover(set);
     std::size_t weakest = set.size();
-    double lowest = sure;
+    double lowest = 0.0, found = 0.0, expected = 0.0;
     for (std::size_t k = 0; k < set.size(); ++k) {
       const auto own = worth(set, k);
       const double beyond = std::min(own.by_one_noise - left.by_one_noise, own.by_own_spectrum - left.by_own_spectrum);
-      if (beyond < lowest) lowest = beyond, weakest = k;
+      const double least = sure + (scene_.hurdles.empty() ? 0.0 : scene_.hurdles[set[k]->candidate]);
+      if (beyond - least < lowest) lowest = beyond - least, weakest = k, found = beyond, expected = least;
     }
     if (weakest == set.size()) return;
     discard(set[weakest]->candidate,
             fmt::format("log odds against its absence, above the remainder of stronger findings: {:.1f}; expected at "
                         "least {:.1f}",
-                        lowest, sure),
+                        found, expected),
             true);
     set = without(set, weakest);
     whiten(set, false);
@@ -283,9 +284,12 @@ void Search::prune(ActiveSet& set) {
   }
 }
 
-// Without a name that the exact machine's records have too another may come out, which is looked at in turn. Where the
-// regressors move as the disturbed axis does a name can be what a disturbance does to them, so that all of the target
-// is taken for one: the rest beside that name has lost just this part.
+// Without a name that the exact machine's records have too another may come out, which is looked at in turn. A name
+// that is worth more than what those say for it is there or something like it is: beside others it pays what they say
+// in the median, and has to be worth the rest where it is called a cause. Else it pays all, so that others may take its
+// place. Where the regressors move as the disturbed axis does a name can be what a disturbance does to them, so that
+// all of the target is taken for one: the rest beside that name has lost just this part, and beyond the price nothing
+// is to pay.
 SearchResult Search::run_calibrated() {
   auto result = run();
   std::optional<Calibration> calibration;
@@ -302,24 +306,29 @@ SearchResult Search::run_calibrated() {
     }
     const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
     const auto own = odds_in({evidence_.target(), {}});
-    auto prices = calibration->prices(odds_in, own);
-    // Of noise that is all of the target the price is no part of what a name is worth: beyond it, it is paid.
-    for (std::size_t k = 0; k < names.size(); ++k)
-      if (scene_.disturbed_motion && own[k] - prices[k] > sure) prices[k] = 0.0;
-    if (std::none_of(prices.begin(), prices.end(), [](double price) { return price > 0.0; })) break;
     scene_.prices.resize(candidates().size(), 0.0);
-    for (std::size_t k = 0; k < names.size(); ++k) scene_.prices[names[k]] = prices[k];
+    scene_.hurdles.resize(candidates().size(), 0.0);
+    bool changed = false;
+    const auto prices = calibration->prices(odds_in, own);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto [typical, limit] = prices[k];
+      const bool beyond = own[k] - limit > sure;
+      scene_.prices[names[k]] = !beyond ? limit : scene_.disturbed_motion ? 0.0 : typical;
+      scene_.hurdles[names[k]] = beyond && !scene_.disturbed_motion ? limit - typical : 0.0;
+      changed = changed || scene_.prices[names[k]] > 0.0 || scene_.hurdles[names[k]] > 0.0;
+    }
+    if (!changed) break;
     price_again();
     result = run();
   }
   if (calibration) result.exact_records = calibration->records();
   for (const auto c : known)
-    if (!scene_.prices.empty() && scene_.prices[c] > 0.0 &&
+    if (!scene_.prices.empty() && scene_.prices[c] + scene_.hurdles[c] > 0.0 &&
         std::none_of(result.terms.begin(), result.terms.end(), [&](const Term& term) { return term.candidate == c; }))
       result.discarded.push_back(
           {c, fmt::format("records of the machine as its file says, under forces like the residual, show it too: of {} "
                           "that were simulated one in a hundred has log odds above {:.1f}",
-                          result.exact_records, scene_.prices[c] + sure)});
+                          result.exact_records, scene_.prices[c] + scene_.hurdles[c] + sure)});
   return result;
 }
 

@@ -28,6 +28,12 @@ struct Term {
     std::size_t candidate;
     double probability;
   };
+  // Where runs of the simulated machine describe it better than its columns.
+  struct InRuns {
+    machine::Effect effect;
+    std::size_t response;  // of the records' simulations, the one whose hunting fits
+  };
+  std::optional<InRuns> in_runs;
   std::optional<NamedIn> without_each_log;  // none: of a single log, or without a name
   std::vector<Alternative> alternatives;    // other names that may be in its place, the likeliest first
 };

@@ -4,20 +4,19 @@
 #pragma once
 
 #include <Eigen/Dense>
-#include <span>
 
 #include "host/diagnose/statistics/whitening.hpp"
 
 namespace stiction::host {
 
-// Makes rows white with a variance of one. `residual`: what is taken for noise, in rows of several logs, 0 in those
-// that do not count; `logs`: first row of each.
-Whitening noise_of(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
+// Makes rows white with a variance of one, those at rest and those in motion each. `residual`: what is taken for noise,
+// in `rows`, 0 in those that do not count.
+Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows);
 
 // The log likelihood of that noise, nats, but for a constant: what tells two residuals of the same rows apart.
-double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
+double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& rows);
 // The same with rows that count as another noise has it, which `known` makes white: only the spectrum is the residual's
-// own. `residual` and `logs`: as above.
-double noise_log_likelihood(const Eigen::VectorXd& residual, std::span<const std::size_t> logs, const Whitening& known);
+// own. `residual` and `rows`: as above.
+double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& rows, const Whitening& known);
 
 }  // namespace stiction::host

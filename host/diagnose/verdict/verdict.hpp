@@ -15,6 +15,7 @@
 #include "host/diagnose/verdict/agreement.hpp"
 #include "host/log/log.hpp"
 #include "host/log/shown_units.hpp"
+#include "sim/cam/motion.hpp"
 #include "sim/effects/effects.hpp"
 #include "sim/effects/force_map/force_map.hpp"
 #include "sim/experiment/experiment_result.hpp"
@@ -149,10 +150,36 @@ struct OpenQuestion {
 // Standard errors: what a trajectory separates by less it leaves open, even recorded four times.
 inline constexpr double least_separation = 2.5;
 
+// Of what a cause does in all records, squared: so much a different name must be unable to imitate before it is
+// excluded, however certain that is. A search knows the forces no better (of_strongest in
+// host/diagnose/search/price.hpp).
+inline constexpr double least_share = 0.02;
+
 struct RehearsedTrajectory {
   std::string name, words;
   double duration = 0.0;            // s
   std::vector<double> separations;  // standard errors expected of it, one a question; 0 where no motion answers
+  // Of a cam, one a question: the part, of what a cause does in these records and in this one together, that the other
+  // cannot imitate, squared. Empty of paths of set-points.
+  std::vector<double> shares{};
+
+  // Whether it is expected to answer the question of that index, recorded as often as it must be.
+  bool answers(std::size_t question) const {
+    return separations[question] >= least_separation && (shares.empty() || shares[question] >= least_share);
+  }
+};
+
+// The cam of a measurement of an axis that follows a master.
+struct ProposedCam {
+  sim::cam::Cam cam;            // in the axis' own unit over an angle of the master
+  double rise = 0.0;            // rad of the master
+  std::string law;              // of its rises
+  double turns = 0.0;           // of the master in a minute
+  std::string speed;            // the same, as `simulate cam --speed` takes it
+  double master_speed = 0.0;    // rad/s
+  double recorded_speed = 0.0;  // rad/s, the highest of the master in the present records
+  int cycles = 0;               // that are recorded
+  std::string spectrum{};       // sentences: at which orders of the master lift and candidates have their lines
 };
 
 // What to record next, chosen by running each trajectory in simulation.
@@ -166,6 +193,7 @@ struct NextMeasurement {
   int times = 1;     // how often it must be recorded until the question that it answers worst is settled
   std::string note;  // where it begins, how far it goes
   std::vector<sim::Chart> charts;
+  std::optional<ProposedCam> cam{};  // of the best one, of an axis that follows a cam
 };
 
 struct ResidualFigures {

@@ -52,6 +52,18 @@ Json finding_json(const Finding& f, const Verdict& verdict) {
   return out;
 }
 
+Json cam_json(const NextMeasurement& next, const std::string& axis) {
+  constexpr double degrees = 57.295779513082321;
+  const auto& cam = *next.cam;
+  return {{"file", next_measurement_cam_of(axis)},
+          {"law", cam.law},
+          {"rise_deg", cam.rise * degrees},
+          {"master_speed_rpm", cam.turns},
+          {"cycles", cam.cycles},
+          {"spectrum", cam.spectrum},
+          {"command", next_measurement_command(next, axis)}};
+}
+
 Json next_json(const NextMeasurement& next) {
   const auto separation = [](const OpenQuestion& question, double value) {
     return question.by_motion ? Json(value) : Json(nullptr);
@@ -68,8 +80,13 @@ Json next_json(const NextMeasurement& next) {
     for (std::size_t k = 0; k < t.separations.size(); ++k)
       separations.push_back(separation(next.questions[k], t.separations[k]));
     trajectories.push_back({{"name", t.name}, {"duration_s", t.duration}, {"standard_errors", separations}});
+    if (t.shares.empty()) continue;
+    Json shares = Json::array();
+    for (std::size_t k = 0; k < t.shares.size(); ++k) shares.push_back(separation(next.questions[k], t.shares[k]));
+    trajectories.back()["shares"] = std::move(shares);
   }
   Json out{{"axis", next.axis}, {"log", next.log ? Json(next_measurement_file) : Json(nullptr)}};
+  if (next.cam) out["cam"] = cam_json(next, "");
   if (next.log) {
     out["trajectory"] = next.trajectories.front().name;
     out["times"] = next.times;
@@ -173,6 +190,16 @@ std::string next_measurement_file_of(const std::string& axis) {
   return axis.empty() ? next_measurement_file : fmt::format("next_measurement_{}.csv", axis);
 }
 
+std::string next_measurement_cam_of(const std::string& axis) {
+  return axis.empty() ? next_measurement_cam_file : fmt::format("next_measurement_{}_cam.toml", axis);
+}
+
+std::string next_measurement_command(const NextMeasurement& next, const std::string& axis) {
+  return fmt::format(
+      "stiction simulate cam --machine extended.toml --axis {} --cam {} --speed \"{}\" --cycles {} --log next.csv",
+      next.axis, next_measurement_cam_of(axis), next.cam->speed, next.cam->cycles);
+}
+
 Json verdict_json(const std::vector<Verdict>& verdicts) {
   if (verdicts.size() == 1) return verdict_json(verdicts.front());
   const auto& first = verdicts.front();
@@ -182,6 +209,7 @@ Json verdict_json(const std::vector<Verdict>& verdicts) {
     for (const char* common : {"schema", "machine", "logs", "holdout", "holdout_is_a_part", "extended_machine"})
       axis.erase(common);
     if (verdict.next && verdict.next->log) axis["next_measurement"]["log"] = next_measurement_file_of(verdict.axis);
+    if (verdict.next && verdict.next->cam) axis["next_measurement"]["cam"] = cam_json(*verdict.next, verdict.axis);
     axes[verdict.axis] = std::move(axis);
   }
   return {{"schema", "stiction.verdict/1"},
@@ -235,21 +263,25 @@ std::string next_measurement_text(const NextMeasurement& next) {
                               q.separate_by);
   }
   const auto& best = next.trajectories.front();
-  text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration,
-                      next.times > 1 ? fmt::format(", {} times", next.times) : std::string());
+  const auto amount = next.cam         ? fmt::format(", {} cycles", next.cam->cycles)
+                      : next.times > 1 ? fmt::format(", {} times", next.times)
+                                       : std::string();
+  text += next.cam ? "the cam " : "";
+  text += fmt::format("{}, {:.0f} s{}; expected", best.name, best.duration, amount);
   std::vector<std::string> settled, open;
   for (std::size_t k = 0; k < next.questions.size(); ++k) {
     const auto& q = next.questions[k];
     const auto what =
         q.rival ? fmt::format("{} or {}", q.effect.name(), q.rival->name()) : std::string(q.effect.name());
-    if (q.by_motion && best.separations[k] >= least_separation)
+    if (q.by_motion && best.answers(k))
       settled.push_back(
           fmt::format("{:.1f} standard errors for {} (these logs: {:.1f})", best.separations[k], what, q.these_logs));
     else
       open.push_back(what);
   }
   text += fmt::format(" {}", fmt::join(settled, ", "));
-  return open.empty() ? text : text + fmt::format("; leaves open {}", fmt::join(open, ", "));
+  if (!open.empty()) text += fmt::format("; leaves open {}", fmt::join(open, ", "));
+  return next.cam ? text + ". " + next.cam->spectrum : text;
 }
 
 namespace {

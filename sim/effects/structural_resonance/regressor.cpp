@@ -71,27 +71,42 @@ void describe(const SearchContext& context, double frequency, const Eigen::Vecto
 
 }  // namespace before
 
-// The scanned frequency is that of the body behind, the measured part held; the weight is its share of the mass over
-// the usual one.
+// The scanned frequency is that of the body behind, the measured part held. Far below the mode the weight is the other
+// part's share, whatever the measured one's is. A drive that is slow against the mode leaves both parts free, and the
+// mode is where the measured one's share has it: each share has columns of its own, and the weight moves it to one
+// nearby.
 namespace behind {
 
 ElasticMode mode_of(double frequency, double ratio) {
   const double root = std::sqrt(ratio);
   return {frequency / root, usual_damping / root, ratio, true};
 }
-double ratio_of(const Eigen::VectorXd& w) { return 1.0 - (1.0 - usual_ratio) * w[0]; }
-Columns columns(const SearchContext& context, const Motion& motion, double frequency) {
-  return columns_of(context, motion, mode_of(frequency, usual_ratio));
-}
-bool possible(const SearchContext& context, double frequency, const Eigen::VectorXd& w) {
-  const double ratio = ratio_of(w);
-  return ratio > least_ratio && ratio < 1.0 - least_ratio && (1.0 - ratio) * bend_of(frequency) > least_bend(context);
-}
-void describe(const SearchContext& context, double frequency, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
-              Finding& finding) {
-  const auto mode = mode_of(frequency, ratio_of(w));
-  add_keys(context, finding, mode, 0.5 * (step - 1.0) * mode.frequency, (1.0 - usual_ratio) * std::sqrt(c(0, 0)));
-}
+template <int percent>
+struct Share {
+  static constexpr double usual = 0.01 * percent;
+
+  static double ratio_of(const Eigen::VectorXd& w) { return 1.0 - (1.0 - usual) * w[0]; }
+  static Columns columns(const SearchContext& context, const Motion& motion, double frequency) {
+    return columns_of(context, motion, mode_of(frequency, usual));
+  }
+  static bool possible(const SearchContext& context, double frequency, const Eigen::VectorXd& w) {
+    const double ratio = ratio_of(w);
+    return ratio > least_ratio && ratio < 1.0 - least_ratio && (1.0 - ratio) * bend_of(frequency) > least_bend(context);
+  }
+  static void describe(const SearchContext& context, double frequency, const Eigen::VectorXd& w,
+                       const Eigen::MatrixXd& c, Finding& finding) {
+    const double ratio = ratio_of(w);
+    const auto mode = mode_of(frequency, ratio);
+    add_keys(context, finding, mode, 0.5 * (step - 1.0) * mode.frequency, (1.0 - usual) * std::sqrt(c(0, 0)));
+  }
+  static constexpr Candidate force{.grid = grid,
+                                   .columns = columns,
+                                   .possible = possible,
+                                   .describe = describe,
+                                   .like_dynamics = true,
+                                   .trials = 4.0 * 3};  // with the shares
+};
+const Candidate shares[] = {Share<25>::force, Share<50>::force, Share<75>::force};
 
 }  // namespace behind
 }  // namespace
@@ -102,11 +117,6 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .describe = before::describe,
                                                  .like_dynamics = true,
                                                  .trials = 4.0},
-                                       .other_force = {.grid = grid,
-                                                       .columns = behind::columns,
-                                                       .possible = behind::possible,
-                                                       .describe = behind::describe,
-                                                       .like_dynamics = true,
-                                                       .trials = 4.0}};
+                                       .other_forces = behind::shares};
 
 }  // namespace stiction::host::effects::structural_resonance

@@ -17,9 +17,11 @@ using namespace stiction::host;
 SearchContext context_of(double gain, std::size_t followed = 1000) {
   SearchContext context;
   context.exact_records = [=](const Eigen::VectorXd& force) -> ExactRecords {
-    return [=](std::size_t draw) -> std::optional<ExactRecord> {
-      if (draw >= followed) return std::nullopt;
-      return ExactRecord{gain * force, {}};
+    return [=](std::size_t begin, std::size_t end) {
+      std::vector<ExactRecord> records;
+      for (std::size_t draw = begin; draw < std::min(end, followed); ++draw)
+        records.push_back(ExactRecord{gain * force, {}});
+      return records;
     };
   };
   return context;
@@ -36,21 +38,27 @@ TEST(Calibration, asks_nothing_where_exact_records_have_little_odds) {
   Calibration calibration(context_of(1.0), left_over);
   EXPECT_EQ(calibration.records(), 24U);
   const auto prices = calibration.prices([&](const ExactRecord&) { return std::vector{-4.0 + tail(random)}; }, {30.0});
-  EXPECT_EQ(prices, std::vector{0.0});
+  EXPECT_EQ(prices[0].limit, 0.0);
+  EXPECT_EQ(prices[0].typical, 0.0);
 }
 
-// What one record in a hundred exceeds, shared among all candidates: 50 + ln(100 n) for a tail of one nat.
+// What one record in a hundred exceeds, shared among all candidates: 50 + ln(100 n) for a tail of one nat; the median
+// is 50 + ln 2.
 TEST(Calibration, prices_a_name_by_the_tail_of_its_odds) {
   std::mt19937_64 random(2);
   std::exponential_distribution<double> tail;
   Calibration calibration(context_of(1.0), left_over);
   const double expected = 50.0 + std::log(100.0 * static_cast<double>(candidates().size())) - sure;
-  double mean = 0.0;
+  double mean = 0.0, typical = 0.0;
   constexpr int times = 200;
-  for (int k = 0; k < times; ++k)
-    mean +=
-        calibration.prices([&](const ExactRecord&) { return std::vector{50.0 + tail(random)}; }, {1000.0})[0] / times;
+  for (int k = 0; k < times; ++k) {
+    const auto price =
+        calibration.prices([&](const ExactRecord&) { return std::vector{50.0 + tail(random)}; }, {1000.0})[0];
+    mean += price.limit / times;
+    typical += price.typical / times;
+  }
   EXPECT_NEAR(mean, expected, 0.05 * expected);
+  EXPECT_NEAR(typical, 50.0 + std::log(2.0), 0.1);
 }
 
 // The price is about 58 nats, and known from 24 records to some 2.5.
@@ -80,8 +88,8 @@ TEST(Calibration, does_not_price_what_no_exact_record_can_have) {
         return std::vector{-std::numeric_limits<double>::infinity(), 30.0};
       },
       {50.0, 50.0});
-  EXPECT_EQ(prices[0], 0.0);
-  EXPECT_EQ(prices[1], 30.0 - sure);
+  EXPECT_EQ(prices[0].limit, 0.0);
+  EXPECT_EQ(prices[1].limit, 30.0 - sure);
 }
 
 // The loop's answer and the encoder's steps add to what is drawn.

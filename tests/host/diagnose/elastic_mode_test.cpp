@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"

@@ -91,7 +91,7 @@ TEST(NoiseModel, MakesRowsOfVarianceOneAndLooksPastAnOddOne) {
   Eigen::VectorXd noise(4000);
   double slow = 0.0;
   for (double& each : noise) each = slow = 0.9 * slow + 3.0 * normal(random);
-  const std::array<std::size_t, 1> logs{0};
+  const std::vector<std::size_t> logs{0};
   const Eigen::VectorXd white = noise_of(noise, logs)(noise);
   EXPECT_NEAR(white.squaredNorm() / 4000.0, 1.0, 0.1);
   auto hit = noise;

@@ -7,6 +7,7 @@
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
+#include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/record.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"

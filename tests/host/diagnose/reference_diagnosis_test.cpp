@@ -57,13 +57,31 @@ TEST(ReferenceDiagnosis, halves_the_current_error_on_feeds_not_used) {
   }
 }
 
+// To the bit: no axis of the cross table feels the other, and the lap is the same one.
+TEST(ReferenceDiagnosis, drives_each_axis_alone_on_the_circle_of_both) {
+  auto machine = sim::read_machine(machine_file());
+  host::ReferenceCircles circles;
+  for (const double viscous : {0.0, 20.0}) {
+    if (viscous > 0.0) machine.axes[1].effects.push_back({"viscous_mismatch", {{"viscous", {viscous}}}});
+    const double feed = 48.0 / 60.0;
+    const auto figures = circles.at(machine, feed), again = circles.at(machine, feed);
+    const auto run = host::reference_circle(machine, feed);
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(figures[k].error, run.axes[k].peak_error);
+      EXPECT_EQ(figures[k].current, run.axes[k].peak_current);
+      EXPECT_EQ(again[k].error, figures[k].error);
+    }
+  }
+}
+
 TEST(ReferenceDiagnosis, looks_at_no_row_but_those_of_the_training) {
   const auto machine = sim::read_machine(machine_file());
   auto other = machine;
   for (auto& row : other.circle_references)
     if (std::abs(row.feed - host::calibration_feed) > 1e-6) row.error = row.current = 1e3;
-  const auto extension = host::extend_by_rows(machine, host::calibration_feed);
-  const auto with_other_rows = host::extend_by_rows(other, host::calibration_feed);
+  host::ReferenceCircles circles, of_other;
+  const auto extension = host::extend_by_rows(machine, host::calibration_feed, circles);
+  const auto with_other_rows = host::extend_by_rows(other, host::calibration_feed, of_other);
   for (std::size_t axis = 0; axis < 2; ++axis) {
     const auto effects = host::effects_of(machine, extension, axis);
     const auto again = host::effects_of(other, with_other_rows, axis);
