@@ -275,7 +275,7 @@ std::string diagnosis_report_html(const DiagnosisReport& report) {
                         "cause from other effects that repeat with the same motion. Record a different trajectory."s
                       : "The held-out logs were not used to choose or fit the causes."s},
       {"causes", causes},
-      {"next", next_measurement_json(verdict.next)},
+      {"next", next_measurement_json(verdict.next, report.suffix)},
       {"rejected", rejected},
       {"unexplained", unexplained_text(verdict.unexplained)},
       {"notes", notes},

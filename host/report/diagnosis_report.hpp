@@ -16,7 +16,8 @@ struct DiagnosisReport {
   std::string version;  // of stiction
   machine::Machine machine;
   Verdict verdict;
-  Origin origin{};  // files, sample rate, date
+  Origin origin{};       // files, sample rate, date
+  std::string suffix{};  // of the names of its files: its axis where there are several; empty: the only one
 };
 
 // The whole page, UTF-8; one file that loads nothing. Throws std::invalid_argument when a series' x and y differ in

@@ -7,7 +7,7 @@
 
 namespace stiction::host {
 
-// For drawNext() of diagnosis.js; null where nothing is open.
-nlohmann::ordered_json next_measurement_json(const std::optional<NextMeasurement>& next);
+// For drawNext() of diagnosis.js; null where nothing is open. `axis`: in the names of its files, empty: the only one.
+nlohmann::ordered_json next_measurement_json(const std::optional<NextMeasurement>& next, const std::string& axis);
 
 }  // namespace stiction::host

@@ -3,12 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
 #include "host/diagnose/describe/diagnosis_charts.hpp"
+#include "host/diagnose/next_measurement/cam_charts.hpp"
+#include "host/diagnose/next_measurement/cam_rehearsal.hpp"
 #include "host/diagnose/next_measurement/separation.hpp"
 #include "host/diagnose/next_measurement/trajectory_rehearsal.hpp"
+#include "host/diagnose/search/price.hpp"
 #include "host/log/own_units.hpp"
 #include "sim/effects/effects.hpp"
 
@@ -32,11 +36,29 @@ struct AskedQuestion {
   std::vector<Explanation> others;  // that act beside either
 };
 
+// From that share on a cam counts in full: where twice the least one was expected, records were seen to hold less.
+constexpr double ample_share = 5.0 * least_share;
+static_assert(least_share == of_strongest);
+
 double separation_of(const Separation& separation, const Records& records, const AskedQuestion& question) {
   const double one = separation.expected(records, question.truth, question.rival, question.others);
   if (question.rival.empty()) return one;
   // Either may be true: what is certain is the smaller.
   return std::min(one, separation.expected(records, question.rival, question.truth, question.others));
+}
+
+// Of what either answer does in the records, squared, the smaller part that the other one does not imitate.
+double share_of(const Separation& separation, const Records& records, const AskedQuestion& question) {
+  const std::vector<Explanation> nothing;
+  double share = 1.0;
+  for (const bool first : {true, false}) {
+    const auto& truth = first ? question.truth : question.rival;
+    const auto& rival = first ? question.rival : question.truth;
+    const double whole = separation.expected(records, truth, nothing, question.others);
+    if (whole > 0.0)
+      share = std::min(share, std::pow(separation.expected(records, truth, rival, question.others) / whole, 2));
+  }
+  return share;
 }
 
 class Questions {
@@ -130,8 +152,11 @@ class Questions {
 // model has wrong grows with the force, and the first run of a machine's new motion should not be its fiercest.
 double worth(const RehearsedTrajectory& trajectory, const Log& log) {
   double sum = 0.0, highest = 0.0;
-  for (const double separation : trajectory.separations)
-    sum += std::min(separation * std::sqrt(usual_duration / trajectory.duration) / ample, 1.0);
+  for (std::size_t k = 0; k < trajectory.separations.size(); ++k) {
+    const double settled =
+        std::min(trajectory.separations[k] * std::sqrt(usual_duration / trajectory.duration) / ample, 1.0);
+    sum += trajectory.shares.empty() ? settled : settled * std::min(trajectory.shares[k] / ample_share, 1.0);
+  }
   const auto& axis = log.axes.front();
   for (const double effort : axis.i.empty() ? axis.u : axis.i) highest = std::max(highest, std::abs(effort));
   return sum - 1e-5 * highest;
@@ -154,28 +179,130 @@ std::vector<sim::Chart> charts_of(const Log& log, const std::string& name, const
   return {position, speed};
 }
 
-// Sorted by worth; the log of the best one, where it is of any.
-void rank(NextMeasurement& next, std::vector<Rehearsal>& rehearsals, std::vector<RehearsedTrajectory> judged,
-          const ShownUnits& own) {
+// Sorted by worth. The index of the best one, where it is of any.
+std::optional<std::size_t> rank(NextMeasurement& next, const std::vector<Rehearsal>& rehearsals,
+                                const std::vector<RehearsedTrajectory>& judged) {
   std::vector<std::size_t> order(judged.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::vector<double> worths;
   for (std::size_t k = 0; k < judged.size(); ++k) worths.push_back(worth(judged[k], rehearsals[k].log));
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return worths[a] > worths[b]; });
   for (const auto k : order) next.trajectories.push_back(judged[k]);
-  if (order.empty()) return;
+  if (order.empty()) return std::nullopt;
   // Of the questions that the best one bears on, that which it settles last.
   double weakest = enough;
   bool any = false;
-  for (const double s : next.trajectories.front().separations) {
-    if (s < least_separation) continue;
-    weakest = std::min(weakest, s);
+  const auto& first = next.trajectories.front();
+  for (std::size_t k = 0; k < first.separations.size(); ++k) {
+    if (!first.answers(k)) continue;
+    weakest = std::min(weakest, first.separations[k]);
     any = true;
   }
-  if (!any) return;
+  if (!any) return std::nullopt;
   next.times = static_cast<int>(std::ceil(std::pow(enough / weakest, 2) - 1e-9));
-  next.log = std::move(rehearsals[order.front()].log);
-  next.charts = charts_of(*next.log, next.trajectories.front().name, own);
+  return order.front();
+}
+
+// The present records and the one of a cam, repeated until it lasts as long as records usually do. A cause that a cam
+// shows as a function of the place is told from one by two cams, and by neither alone.
+class JointRecords {
+ public:
+  JointRecords(const Searched& searched, const Rehearsal& rehearsal)
+      : copies_(static_cast<std::size_t>(std::ceil(usual_duration / rehearsal.log.t.back()))),
+        present_(searched.rows.motions().size()),
+        context_(rehearsal.context),
+        rows_(motions_of(searched, rehearsal, copies_), searched.settings) {
+    const auto& source = rehearsal.rows.motions().front().source;
+    if (!searched.context.response || !rehearsal.context.response) return;
+    context_.response = [source, now = searched.context.response, then = rehearsal.context.response](
+                            const Motion& motion, const machine::Effect& effect, std::size_t most_runs) {
+      return (motion.source == source ? then : now)(motion, effect, most_runs);
+    };
+  }
+  JointRecords(const JointRecords&) = delete;
+  JointRecords& operator=(const JointRecords&) = delete;
+  ~JointRecords() = default;
+
+  Records records() const { return {rows_, context_}; }
+  std::size_t copies() const { return copies_; }
+  // Those of `values`, one a row, that are of the cam, once.
+  Eigen::VectorXd of_cam(const Eigen::VectorXd& values) const {
+    const auto begin = static_cast<Eigen::Index>(rows_.logs()[present_]);
+    return values.segment(begin, static_cast<Eigen::Index>(rows_.end(present_)) - begin);
+  }
+
+ private:
+  static std::vector<Motion> motions_of(const Searched& searched, const Rehearsal& rehearsal, std::size_t copies) {
+    auto motions = searched.rows.motions();
+    motions.insert(motions.end(), copies, rehearsal.rows.motions().front());
+    return motions;
+  }
+
+  std::size_t copies_, present_;
+  SearchContext context_;
+  LogRows rows_;
+};
+
+// What a cam is expected to show together with the present records.
+RehearsedTrajectory judged_cam(Rehearsal& rehearsal, const std::vector<AskedQuestion>& questions,
+                               const Searched& searched, const Separation& separation) {
+  const JointRecords joint(searched, rehearsal);
+  const auto records = joint.records();
+  rehearsal.cam->cycles *= static_cast<int>(joint.copies());
+  RehearsedTrajectory judged{
+      rehearsal.name, rehearsal.words, rehearsal.log.t.back() * static_cast<double>(joint.copies()), {}};
+  for (const auto& question : questions) {
+    const bool by_motion = question.shown.by_motion;
+    judged.separations.push_back(by_motion ? separation_of(separation, records, question) : 0.0);
+    judged.shares.push_back(by_motion && !question.rival.empty() ? share_of(separation, records, question) : 1.0);
+  }
+  return judged;
+}
+
+RehearsedTrajectory judged_path(const Rehearsal& rehearsal, const std::vector<AskedQuestion>& questions,
+                                const Separation& separation) {
+  RehearsedTrajectory judged{rehearsal.name, rehearsal.words, rehearsal.log.t.back(), {}};
+  const Records records{rehearsal.rows, rehearsal.context};
+  for (const auto& question : questions)
+    judged.separations.push_back(question.shown.by_motion ? separation_of(separation, records, question) : 0.0);
+  return judged;
+}
+
+// Of the question that the rehearsal answers best: the forces of both candidates, and what separates them.
+CamSpectrum spectrum_of(const Searched& searched, const Separation& separation, const Rehearsal& rehearsal,
+                        const std::vector<AskedQuestion>& questions, const std::vector<double>& separations) {
+  const auto best =
+      static_cast<std::size_t>(std::max_element(separations.begin(), separations.end()) - separations.begin());
+  const auto& question = questions[best];
+  const JointRecords joint(searched, rehearsal);
+  const auto records = joint.records();
+  CamSpectrum spectrum;
+  for (const auto* causes : {&question.truth, &question.rival})
+    for (const auto& cause : *causes)
+      spectrum.candidates.push_back(
+          {std::string((*candidates()[cause.candidate].effect)->title), joint.of_cam(force_of(records, cause))});
+  auto part = separation.separating_part(records, question.truth, question.rival, question.others);
+  if (!question.rival.empty()) {
+    // What is certain is the smaller.
+    auto other = separation.separating_part(records, question.rival, question.truth, question.others);
+    if (other.norm() < part.norm()) part = std::move(other);
+  }
+  spectrum.separating = joint.of_cam(part);
+  return spectrum;
+}
+
+// What the best one is made of, with its pictures. More cycles of a cam are one longer record.
+void describe_cam(NextMeasurement& next, const Searched& searched, const Separation& separation,
+                  const Rehearsal& rehearsal, const std::vector<AskedQuestion>& questions, const ShownUnits& own) {
+  auto picture = cam_picture(
+      rehearsal, spectrum_of(searched, separation, rehearsal, questions, next.trajectories.front().separations),
+      searched.machine.axes[searched.axis], own);
+  next.cam = rehearsal.cam;
+  next.cam->cycles *= next.times;
+  next.times = 1;
+  next.cam->spectrum = std::move(picture.words);
+  next.charts = std::move(picture.charts);
+  next.note = cam_words(*next.cam, rehearsal.log, own);
 }
 
 }  // namespace
@@ -194,22 +321,27 @@ void propose_next_measurement(Verdict& verdict, const Searched& searched, bool p
   next.axis = searched.context.axis.name;
   for (const auto& question : questions) next.questions.push_back(question.shown);
   if (std::any_of(questions.begin(), questions.end(), [](const AskedQuestion& q) { return q.shown.by_motion; })) {
-    const auto range = motion_range(searched.machine.axes[searched.axis], searched.rows);
-    auto rehearsals =
-        rehearse(searched.machine, searched.axis, range, searched.rows, searched.context, searched.settings);
+    const auto& axis = searched.machine.axes[searched.axis];
+    const auto recorded = recorded_cam(searched.logs, axis);
+    auto rehearsals = recorded ? rehearse_cams(searched.machine, searched.axis, *recorded, searched.rows,
+                                               searched.context, searched.settings)
+                               : rehearse(searched.machine, searched.axis, motion_range(axis, searched.rows),
+                                          searched.rows, searched.context, searched.settings);
     std::vector<RehearsedTrajectory> judged;
-    for (const auto& rehearsal : rehearsals) {
-      judged.push_back({rehearsal.trajectory->name, rehearsal.trajectory->words, rehearsal.log.t.back(), {}});
-      const Records records{rehearsal.rows, rehearsal.context};
-      for (const auto& question : questions)
-        judged.back().separations.push_back(question.shown.by_motion ? separation_of(separation, records, question)
-                                                                     : 0.0);
-    }
-    rank(next, rehearsals, std::move(judged), verdict.units);
-    if (next.log) {
-      next.note = extent_words(*next.log, searched.rows, verdict.units);
+    for (auto& rehearsal : rehearsals)
+      judged.push_back(recorded ? judged_cam(rehearsal, questions, searched, separation)
+                                : judged_path(rehearsal, questions, separation));
+    if (const auto best = rank(next, rehearsals, judged)) {
+      auto& rehearsal = rehearsals[*best];
+      if (rehearsal.cam) {
+        describe_cam(next, searched, separation, rehearsal, questions, verdict.units);
+      } else {
+        next.charts = charts_of(rehearsal.log, rehearsal.name, verdict.units);
+        next.note = extent_words(rehearsal.log, searched.rows, verdict.units);
+      }
+      next.log = std::move(rehearsal.log);
       auto& channels = next.log->axes.front();
-      channels = in_own_units(std::move(channels), searched.machine.axes[searched.axis].coordinate);
+      channels = in_own_units(std::move(channels), axis.coordinate);
     }
   }
   // What was nearly found and no trajectory shows is no news.

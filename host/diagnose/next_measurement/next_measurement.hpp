@@ -1,6 +1,8 @@
 // What to record next where causes cannot be told apart, or one is not quite significant: every trajectory of
 // sim/experiment/separating_trajectories.hpp is run on the machine file's simulation, and the one whose record is
-// expected to separate them best (separation.hpp) is proposed, as set-points that can be run.
+// expected to separate them best (separation.hpp) is proposed, as set-points that can be run. Where the records are of
+// an axis that follows a cam, the trajectories are the cams of sim/cam/separating_cams.hpp, and what is proposed is a
+// motion file with a speed of the master.
 #pragma once
 
 #include "firmware/machine/model/machine.hpp"
@@ -15,6 +17,7 @@ struct Searched {
   const machine::Machine& machine;
   std::size_t axis;  // of the machine
   const SignalSettings& settings;
+  const std::vector<Log>& logs;   // of the rows, with linear channels
   const LogRows& rows;            // of the regressors
   const Eigen::VectorXd& target;  // N, residual force with the machine file
   const SearchContext& context;

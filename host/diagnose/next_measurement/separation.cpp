@@ -40,6 +40,8 @@ void append(std::vector<Eigen::VectorXd>& all, const std::vector<Eigen::VectorXd
   all.insert(all.end(), more.begin(), more.end());
 }
 
+}  // namespace
+
 Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
   const auto& candidate = candidates()[cause.candidate];
   const auto columns = shared_columns(records.rows, records.context, candidate, cause.shape);
@@ -50,8 +52,6 @@ Eigen::VectorXd force_of(const Records& records, const Explanation& cause) {
   for (std::size_t c = 0; c < columns.size(); ++c) force += coefficients[static_cast<Eigen::Index>(c)] * columns[c];
   return force;
 }
-
-}  // namespace
 
 Separation::Separation(const LogRows& rows, const Eigen::VectorXd& residual) : whitening_(residual, rows.logs()) {
   const Eigen::VectorXd white = whitening_(residual);
@@ -125,6 +125,17 @@ double Separation::explained(const Records& records, const Eigen::VectorXd& targ
 
 double Separation::expected(const Records& records, std::span<const Explanation> truth,
                             std::span<const Explanation> rival, std::span<const Explanation> others) const {
+  return unimitated(records, truth, rival, others).norm() / deviation_;
+}
+
+Eigen::VectorXd Separation::separating_part(const Records& records, std::span<const Explanation> truth,
+                                            std::span<const Explanation> rival,
+                                            std::span<const Explanation> others) const {
+  return unimitated(records, truth, rival, others) / deviation_;
+}
+
+Eigen::VectorXd Separation::unimitated(const Records& records, std::span<const Explanation> truth,
+                                       std::span<const Explanation> rival, std::span<const Explanation> others) const {
   const auto& rows = records.rows;
   const auto& context = records.context;
   const auto& trusted = trust(records);
@@ -154,8 +165,8 @@ double Separation::expected(const Records& records, std::span<const Explanation>
   for (const auto& cause : truth) acting += force_of(records, cause);
   const Basis rest(beside);
   const Eigen::VectorXd force = rest.without(white(rows, acting).cwiseProduct(trusted));
-  double least = force.norm();
-  if (rival.size() != 1) return least / deviation_;
+  if (rival.size() != 1) return force;
+  Eigen::VectorXd least = force;
   auto values = std::vector{rival.front().shape};
   if (!candidates()[rival.front().candidate].replays) {
     const auto more = values_of(records, rival.front().candidate, acting);
@@ -165,10 +176,10 @@ double Separation::expected(const Records& records, std::span<const Explanation>
     auto own = columns_of(rival.front(), value);
     for (auto& column : own) column = rest.without(column);
     const Basis basis(own);
-    if (candidates()[rival.front().candidate].possible(context, value, basis.coefficients(force)))
-      least = std::min(least, basis.without(force).norm());
+    if (!candidates()[rival.front().candidate].possible(context, value, basis.coefficients(force))) continue;
+    if (Eigen::VectorXd left = basis.without(force); left.norm() < least.norm()) least = std::move(left);
   }
-  return least / deviation_;
+  return least;
 }
 
 }  // namespace stiction::host

@@ -29,6 +29,9 @@ struct Records {
   mutable Eigen::VectorXd trust{};
 };
 
+// The force (N) of `cause` with its values, of each row of the `records`.
+Eigen::VectorXd force_of(const Records& records, const Explanation& cause);
+
 class Separation {
  public:
   // `residual`: what the found causes leave of the force in the present rows (N); the noise of other rows is taken to
@@ -45,10 +48,17 @@ class Separation {
   // each record.
   double expected(const Records& records, std::span<const Explanation> truth, std::span<const Explanation> rival,
                   std::span<const Explanation> others) const;
+  // What these standard errors are of: the part of the force of `truth` in the whitened rows of `records` that neither
+  // `rival`, nor `others`, nor a nuisance imitates, over the noise.
+  Eigen::VectorXd separating_part(const Records& records, std::span<const Explanation> truth,
+                                  std::span<const Explanation> rival, std::span<const Explanation> others) const;
   // Share of `target`'s square (whitened) that causes take away at their best weights. `records`: of the trajectory.
   double explained(const Records& records, const Eigen::VectorXd& target, std::span<const Explanation> causes) const;
 
  private:
+  // N of the whitened rows.
+  Eigen::VectorXd unimitated(const Records& records, std::span<const Explanation> truth,
+                             std::span<const Explanation> rival, std::span<const Explanation> others) const;
   SearchContext scanned(const Records& records, const Eigen::VectorXd& force) const;
   std::vector<double> values_of(const Records& records, std::size_t candidate, const Eigen::VectorXd& force) const;
   Eigen::VectorXd white(const LogRows& rows, const Eigen::VectorXd& column) const;

@@ -7,8 +7,8 @@
 
 #include "firmware/machine/configuration/axis_configuration.hpp"
 #include "firmware/machine/model/motor_force.hpp"
+#include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
-#include "host/diagnose/record/replay_setup.hpp"
 #include "host/simulate/control_run.hpp"
 #include "host/simulate/replay.hpp"
 
@@ -103,30 +103,49 @@ std::string extent_words(const Log& proposed, const LogRows& rows, const ShownUn
   return words;
 }
 
+machine::Machine rehearsal_machine(const machine::Machine& machine, std::size_t axis) {
+  auto setup = machine;
+  setup.axes = {machine.axes.at(axis)};
+  setup.axes.front().encoder.noise = 0.0;
+  return setup;
+}
+
+double rehearsal_period(const LogRows& rows) {
+  const double row_period = rows.period(0);
+  return row_period / std::max(1.0, std::round(row_period / usual_period));
+}
+
+std::optional<Rehearsal> rehearsed(const machine::Machine& setup, const Log& set_points, const SearchContext& context,
+                                   const SignalSettings& settings) {
+  try {
+    auto log = replay_linear_as_held(setup, set_points);
+    log.axes.front().i_set.clear();
+    LogRows moved({motion_of(log, log.axes.front(), setup.axes.front(), Amperes::amplitude, settings)}, settings);
+    log.axes.front().force.clear();
+    log.axes.front().v.clear();
+    auto known = scene_with(context, moved);
+    known.response = EffectResponse(setup, 0, {log}, settings, FrictionAlong::own_motion);
+    return Rehearsal{"", "", std::nullopt, std::move(log), std::move(moved), std::move(known)};
+  } catch (const FaultTripped&) {  // not for this machine
+  } catch (const machine::ConfigurationError&) {
+  } catch (const LogError&) {
+  }
+  return std::nullopt;
+}
+
 std::vector<Rehearsal> rehearse(const machine::Machine& machine, std::size_t axis, const sim::MotionRange& range,
                                 const LogRows& rows, const SearchContext& context, const SignalSettings& settings) {
   std::vector<Rehearsal> all;
   if (machine.axes.at(axis).unknown_controller()) return all;
   if (!(range.high > range.low) || !(range.speed > 0.0) || !(range.acceleration > 0.0)) return all;
-  auto setup = machine;
-  setup.axes = {machine.axes.at(axis)};
-  setup.axes.front().encoder.noise = 0.0;
-  const auto& own = setup.axes.front();
-  const double row_period = rows.period(0), period = row_period / std::max(1.0, std::round(row_period / usual_period));
+  const auto setup = rehearsal_machine(machine, axis);
+  const double period = rehearsal_period(rows);
   for (const auto& kind : sim::separating_trajectories()) {
-    try {
-      auto log = replay_linear_as_held(setup, set_points(kind, range, own.name, period));
-      log.axes.front().i_set.clear();
-      LogRows moved({motion_of(log, log.axes.front(), own, Amperes::amplitude, settings)}, settings);
-      log.axes.front().force.clear();
-      log.axes.front().v.clear();
-      auto known = scene_with(context, moved);
-      known.response = EffectResponse(setup, 0, {log}, settings, FrictionAlong::own_motion);
-      all.push_back({&kind, std::move(log), std::move(moved), std::move(known)});
-    } catch (const FaultTripped&) {  // not for this machine
-    } catch (const machine::ConfigurationError&) {
-    } catch (const LogError&) {
-    }
+    auto one = rehearsed(setup, set_points(kind, range, setup.axes.front().name, period), context, settings);
+    if (!one) continue;
+    one->name = kind.name;
+    one->words = kind.words;
+    all.push_back(std::move(*one));
   }
   return all;
 }

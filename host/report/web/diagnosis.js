@@ -130,6 +130,8 @@ function drawNext() {
   if (!next) return document.getElementById('next-section').remove();
   show('next-axis', `axis ${next.axis}`);
   for (const id of ['next-what', 'next-table', 'next-caption', 'next-charts']) if (!next.what) document.getElementById(id).remove();
+  if (next.spectrum) show('next-spectrum', minus(next.spectrum));
+  else document.getElementById('next-spectrum').remove();
   if (next.what) {
     show('next-what', minus(next.what));
     const proposed = i => next.proposed && i === 1;

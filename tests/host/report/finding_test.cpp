@@ -3,9 +3,11 @@
 
 #include <cstdlib>
 
+#include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/report/diagnosis_finding.hpp"
 #include "host/report/experiment_finding.hpp"
 #include "host/report/identification_finding.hpp"
+#include "host/report/next_measurement_section.hpp"
 #include "host/report/origin.hpp"
 #include "tests/host/report/synthetic_circle.hpp"
 #include "tests/host/report/synthetic_diagnosis.hpp"
@@ -70,6 +72,20 @@ TEST(ExperimentSentence, OfAnUnknownExperimentIsItsFirstFinding) {
 }
 
 // ---- diagnosis ----
+
+// Of several axes each has files of its own, and its page names those.
+TEST(NextMeasurementSection, NamesTheFilesOfItsAxis) {
+  for (auto make : {synthetic_diagnosis, synthetic_cam_proposal}) {
+    const auto next = make().verdict.next;
+    ASSERT_TRUE(next);
+    const auto alone = next_measurement_json(next, "").dump(), of_axis = next_measurement_json(next, "Y").dump();
+    const std::string file = next->cam ? next_measurement_cam_of("") : next_measurement_file_of("");
+    const std::string file_of_axis = next->cam ? next_measurement_cam_of("Y") : next_measurement_file_of("Y");
+    EXPECT_NE(alone.find(file), std::string::npos);
+    EXPECT_NE(of_axis.find(file_of_axis), std::string::npos);
+    EXPECT_EQ(of_axis.find(file), std::string::npos);
+  }
+}
 
 TEST(DiagnosisSentence, NamesTheCausesAndWhatTheyAreWorthOnHeldOutData) {
   const auto text = diagnosis_sentence(synthetic_diagnosis().verdict);

@@ -31,6 +31,10 @@ await openPage('open_diagnosis', '', async (page, data) => {
       expect(await rows('next-table') === data.next.rows.length, 'not every trajectory is listed');
       expect(says.includes(data.next.questions[0]), 'what is open is not said');
     }
+    if (data.next.spectrum) {
+      expect(says.includes(data.next.spectrum), 'the spectrum of the proposed cam is not said');
+      expect(says.includes('stiction simulate cam') && says.includes('next_measurement_cam.toml'), 'it is not said what simulates the cam');
+    } else expect(await page.locator('#next-spectrum').count() === 0, 'an empty spectrum is shown');
     for (const row of data.next.elsewhere) expect(says.includes(row.separate_by), `"${row.separate_by}" is not said`);
   } else expect(await page.locator('#next-section').count() === 0, 'an empty proposal is shown');
   if (data.rejected.length) expect(await rows('rejected') === data.rejected.length, 'not every rejected cause is listed');

@@ -168,6 +168,27 @@ DiagnosisReport synthetic_diagnosis() {
   return report;
 }
 
+DiagnosisReport synthetic_cam_proposal() {
+  auto report = synthetic_diagnosis();
+  auto& next = *report.verdict.next;
+  next.trajectories = {
+      {"modified_sine, rise of 72 deg, 39 rpm", "nearly constant speed over most of the rise", 7.7, {14.2, 0.0}}};
+  ProposedCam cam;
+  cam.turns = 39.0;
+  cam.speed = "39 rpm";
+  cam.cycles = 5;
+  cam.spectrum = "At 39 rpm one order of the master is 0.65 Hz.";
+  next.cam = cam;
+  sim::Series lines{"acceleration of the lift", {}, {}};
+  for (double order = 1.0; order < 30.0; order += 1.0) lines.x.push_back(order), lines.y.push_back(100.0 / order);
+  next.charts.push_back({.title = "Spectrum of the proposed lift and of both candidates",
+                         .x_label = "order of the master, 0.65 Hz each",
+                         .y_label = "amplitude, % of the largest line",
+                         .caption = "The separating part is what neither candidate imitates.",
+                         .series = {lines}});
+  return report;
+}
+
 DiagnosisReport synthetic_agreement() {
   auto report = frame();
   auto& v = report.verdict;

@@ -7,6 +7,8 @@ namespace stiction::host {
 
 // Two causes with charts, rejected ones, something unexplained, notes.
 DiagnosisReport synthetic_diagnosis();
+// The same of an axis behind a cam, to which a cam is proposed.
+DiagnosisReport synthetic_cam_proposal();
 // Nothing found, nothing rejected, no held-out log, no set-points.
 DiagnosisReport synthetic_agreement();
 
