@@ -62,11 +62,13 @@ BatchLane lane_of(const BatchRun::Member& member) {
     kind.set_point_delay = lane.compensation.set_point_delay;
   }
   lane.plant = sim::plant_lane(machine.timing, axis, member.position);
-  if (lane.plant) kind.plant = lane.plant->kind;
+  if (lane.plant) {
+    kind.plant = lane.plant->kind;
+    lane.forces = sim::plant_axis(axis);
+  }
   return lane;
 }
 
-// A copy for a lane that no member has: lanes have plants of their own.
 std::unique_ptr<sim::AxisPlant> own_plant(const BatchRun::Member& member) {
   constexpr std::uint64_t seed = 1;  // of a machine's first axis
   return std::make_unique<sim::AxisPlant>(member.machine->timing, member.machine->axes[member.axis], member.position,
@@ -107,12 +109,17 @@ void BatchRun::add_batches(std::vector<BatchLane>& lanes, std::span<const Member
       widest = std::max(widest, width);
       running.rows.resize(set_point_rows * width);
       for (std::size_t lane = 0; lane < width; ++lane) {
-        // Lanes that are left over repeat the last member.
-        const std::size_t member = of_kind[std::min(begin + lane, of_kind.size() - 1)];
-        if (begin + lane < of_kind.size()) places_[member] = {batches_.size(), lane};
-        if (!kind.plant) lanes[member].own_plant = own_plant(members[member]);
+        // Lanes that are left over repeat the last member, without what acts lane by lane; they are not looked at.
+        const bool left_over = begin + lane >= of_kind.size();
+        const std::size_t member = left_over ? of_kind.back() : of_kind[begin + lane];
+        if (left_over) {
+          lanes[member].forces.reset();
+        } else {
+          places_[member] = {batches_.size(), lane};
+          if (!kind.plant) lanes[member].own_plant = own_plant(members[member]);
+          running.members.push_back(member);
+        }
         running.kernel->set_lane(lane, lanes[member]);
-        running.members.push_back(member);
       }
       running.kernel->start();
       batches_.push_back(std::move(running));
@@ -130,10 +137,10 @@ void BatchRun::tick(std::span<const sim::AxisSetPoint> set_points) {
     return ticker_.advance();
   }
   for (auto& batch : batches_) {
-    const std::size_t width = batch.members.size();
+    const std::size_t width = batch.kernel->lanes();
     double* const rows = batch.rows.data();
     for (std::size_t lane = 0; lane < width; ++lane) {
-      const auto& point = set_points[batch.members[lane]];
+      const auto& point = set_points[batch.members[std::min(lane, batch.members.size() - 1)]];
       rows[lane] = point.position;
       rows[width + lane] = point.velocity;
       rows[2 * width + lane] = point.acceleration;
@@ -144,10 +151,16 @@ void BatchRun::tick(std::span<const sim::AxisSetPoint> set_points) {
   ticker_.advance();
 }
 
+void BatchRun::set_external_force(std::span<const double> force) {
+  for (auto& batch : batches_) {
+    for (std::size_t lane = 0; lane < batch.members.size(); ++lane) row_[lane] = force[batch.members[lane]];
+    batch.kernel->set_external_force(row_.data());
+  }
+}
+
 void BatchRun::values(Row row, std::span<double> out) {
   for (auto& batch : batches_) {
     batch.kernel->row(row, row_.data());
-    // A member that is repeated is written again with the same value.
     for (std::size_t lane = 0; lane < batch.members.size(); ++lane) out[batch.members[lane]] = row_[lane];
   }
 }
@@ -167,7 +180,10 @@ FrictionCompensationSignals<LaneSignals> BatchRun::compensation(std::size_t memb
 }
 
 bool BatchRun::any_fault() const {
-  return std::ranges::any_of(batches_, [](const Running& batch) { return batch.kernel->faulted() != 0; });
+  return std::ranges::any_of(batches_, [](const Running& batch) {
+    const unsigned in_use = ~0U >> (8 * sizeof(unsigned) - batch.members.size());
+    return (batch.kernel->faulted() & in_use) != 0;
+  });
 }
 
 }  // namespace stiction::host

@@ -34,6 +34,9 @@ class BatchRun {
   std::size_t size() const { return places_.size(); }
   double time() const { return static_cast<double>(ticker_.now_ns()) * 1e-9; }  // s, of the tick that comes next
 
+  // From outside on the carriages (N, positive in +x), a value a member, held until changed.
+  void set_external_force(std::span<const double> force);
+
   // Controls one tick with a set-point a member, or one for all.
   void tick(std::span<const sim::AxisSetPoint> set_points);
 
@@ -56,7 +59,7 @@ class BatchRun {
   struct Running {
     std::unique_ptr<Kernel> kernel;
     std::vector<double> rows;          // set-points: four rows of a value a lane
-    std::vector<std::size_t> members;  // by lane
+    std::vector<std::size_t> members;  // by lane; none of lanes that are left over
   };
 
   void add_batches(std::vector<BatchLane>& lanes, std::span<const Member> members, InstructionSet set);

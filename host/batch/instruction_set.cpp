@@ -35,6 +35,19 @@ const char* name_of(InstructionSet set) {
   return "";
 }
 
+std::size_t lanes_of(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::sse2:
+    case InstructionSet::neon:
+      return 4;
+    case InstructionSet::avx2:
+      return 8;
+    case InstructionSet::avx512:
+      return 16;
+  }
+  return 1;
+}
+
 std::span<const InstructionSet> instruction_sets() {
   static const std::vector<InstructionSet> sets = found_sets();
   return sets;

@@ -39,6 +39,7 @@ struct BatchLane {
   AxisConfig<LaneSignals> axis;
   FrictionCompensationConfig<LaneSignals> compensation;
   std::optional<sim::PlantLane> plant;
+  std::optional<machine::AxisModel> forces;   // as the plant has it, where effects act on the lane
   std::unique_ptr<sim::AxisPlant> own_plant;  // where there is no lane
 };
 
@@ -63,6 +64,8 @@ class Kernel {
   virtual void set_lane(std::size_t lane, BatchLane& from) = 0;
   // The first tick, at time 0: all axes rest where they are.
   virtual void start() = 0;
+  // On the carriages from now on, N, a value a lane.
+  virtual void set_external_force(const double* force) = 0;
   // Controls a tick and moves the plants on to the next. `now_ns`: its time; `slow`: of the position controller.
   // `set`: its set-points.
   virtual void tick(const SetPointRows& set, std::int64_t now_ns, bool slow) = 0;
@@ -74,11 +77,12 @@ class Kernel {
   virtual void compensation(std::size_t lane, FrictionCompensationSignals<LaneSignals>& out) const = 0;
 };
 
-// Plants of lanes whose batch has none of its own, moved on one by one.
+// Plants of lanes whose batch has none of its own, moved on one by one. A lane without one reads zeros.
 class LanePlants {
  public:
   explicit LanePlants(std::size_t lanes);
   void set(std::size_t lane, std::unique_ptr<sim::AxisPlant> plant);
+  void set_external_force(const double* force);  // N, a value a lane
   // A row of `lanes` values for each of three phases; `enabled`: a bit a lane.
   void command(const double* voltage, unsigned enabled);
   void advance_tick();

@@ -31,6 +31,7 @@ class PlantsOfLanes {
   PlantsOfLanes() : plants_(Real::lanes) {}
 
   void set_lane(std::size_t k, BatchLane& lane) { plants_.set(k, std::move(lane.own_plant)); }
+  void set_external_force(const double* force) { plants_.set_external_force(force); }
   void command(const sim::PhaseValuesOf<Real>& voltage, machine::BatchMask<Isa> enable) {
     std::array<double, 3 * Real::lanes> rows;
     for (std::size_t phase = 0; phase < 3; ++phase) voltage[phase].store(rows.data() + phase * Real::lanes);
@@ -66,7 +67,11 @@ class PlantBatch : public sim::BatchPlant<Isa, Motor, Friction> {
   using Real = machine::Batch<Isa>;
   using Base::Base;
 
-  void set_lane(std::size_t k, BatchLane& lane) { Base::set_lane(k, *lane.plant); }
+  void set_lane(std::size_t k, BatchLane& lane) {
+    Base::set_lane(k, *lane.plant);
+    if (lane.forces) Base::set_forces(k, *lane.forces, 2.0 * lane.plant->half_step, lane.plant->position);
+  }
+  void set_external_force(const double* force) { Base::set_external_force(Real::load(force)); }
   struct Reading {
     Real position, velocity;
   };
@@ -99,6 +104,7 @@ class KernelOf final : public Kernel {
     axis_.start(feedback_);
     compensation_->start(feedback_.position);
   }
+  void set_external_force(const double* force) override { plant_.set_external_force(force); }
   // `rows`: set-points; `now_ns`: time of the tick; `slow`: whether it is one of the position controller.
   void tick(const SetPointRows& rows, std::int64_t now_ns, bool slow) override {
     if constexpr (flat)

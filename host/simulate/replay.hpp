@@ -47,8 +47,6 @@ Log replay_linear(const machine::Machine& machine, const Log& log, const ReplayS
 // of the `machine` on no radius.
 Log replay_linear_as_held(const machine::Machine& machine, const Log& log, const ReplaySettings& settings = {});
 
-inline constexpr double longest_lead_in = 0.5;  // s
-
 // The machine's axis for each of the log's, by index. Throws LogError.
 std::vector<std::size_t> match_axes(const machine::Machine& machine, const Log& log, const std::string& axis);
 

@@ -75,25 +75,43 @@ Equations equations(const LogRows& rows, const std::vector<double>& d, const std
   q.logs = static_cast<Index>(rows.logs().size());
   const Index n = 2 * q.operators + 2 * q.nodes + 1 + q.logs;
   Eigen::MatrixXd columns(rows.rows(), n);
-  for (Index k = 0; k < q.operators; ++k) {
-    const double reach = 0.5 * d[static_cast<std::size_t>(k)];
-    const auto level = [&](const Motion& m) {
-      auto s = stop_operator(m, reach);
-      for (double& x : s) x /= reach;
-      return s;
-    };
-    columns.col(k) = rows.stacked(level);
-    columns.col(q.operators + k) =
-        rows.stacked([&](const Motion& m) { return central_difference(level(m), m.period); });
+  // Four columns are filtered as fast as one, and more than four need memory without being faster.
+  for (Index first = 0; first < q.operators; first += 2) {
+    const Index count = std::min<Index>(2, q.operators - first);
+    const auto filtered = rows.stacked_together([&](const Motion& m) {
+      std::vector<std::vector<double>> levels;
+      for (Index k = first; k < first + count; ++k) {
+        const double reach = 0.5 * d[static_cast<std::size_t>(k)];
+        auto& level = levels.emplace_back(stop_operator(m, reach));
+        for (double& x : level) x /= reach;
+      }
+      for (Index k = 0; k < count; ++k)
+        levels.push_back(central_difference(levels[static_cast<std::size_t>(k)], m.period));
+      return levels;
+    });
+    for (Index k = 0; k < count; ++k) {
+      columns.col(first + k) = filtered[static_cast<std::size_t>(k)];
+      columns.col(q.operators + first + k) = filtered[static_cast<std::size_t>(count + k)];
+    }
   }
-  for (Index k = 0; k < q.nodes; ++k)
-    for (const double sign : {1.0, -1.0})
-      columns.col(2 * q.operators + (sign > 0.0 ? 0 : q.nodes) + k) = rows.stacked([&](const Motion& m) {
-        std::vector<double> column(m.v.size(), 0.0);
-        for (std::size_t i = 0; i < column.size(); ++i)
-          if (sign * m.v[i] > 0.0) column[i] = sign * tent(v, static_cast<std::size_t>(k), std::abs(m.v[i]));
-        return column;
-      });
+  for (Index first = 0; first < q.nodes; first += 2) {
+    const Index count = std::min<Index>(2, q.nodes - first);
+    const auto filtered = rows.stacked_together([&](const Motion& m) {
+      std::vector<std::vector<double>> sliding(static_cast<std::size_t>(2 * count),
+                                               std::vector<double>(m.v.size(), 0.0));
+      for (std::size_t k = 0; k < static_cast<std::size_t>(count); ++k)
+        for (std::size_t i = 0; i < m.v.size(); ++i) {
+          const double weight = tent(v, static_cast<std::size_t>(first) + k, std::abs(m.v[i]));
+          if (m.v[i] > 0.0) sliding[2 * k][i] = weight;
+          if (m.v[i] < 0.0) sliding[2 * k + 1][i] = -weight;
+        }
+      return sliding;
+    });
+    for (Index k = 0; k < count; ++k) {
+      columns.col(2 * q.operators + first + k) = filtered[static_cast<std::size_t>(2 * k)];
+      columns.col(2 * q.operators + q.nodes + first + k) = filtered[static_cast<std::size_t>(2 * k + 1)];
+    }
+  }
   columns.col(n - 1 - q.logs) = rows.acceleration;
   for (Index k = 0; k < q.logs; ++k) {
     const auto log = static_cast<std::size_t>(k);

@@ -26,7 +26,7 @@ struct MachineTuningSettings {
   std::vector<std::size_t> axes;  // to tune, by index
   std::vector<double> feeds;      // m/s, of the comparison; empty: those of tuning_circles
   std::optional<double> shown;    // m/s, of the charts and of the pulse; none: that of tuning_circles
-  bool pulse = true;              // whether the speed pulse is tuned, which takes 250 simulated laps an axis
+  bool pulse = true;              // whether the speed pulse is tuned, which takes 500 simulated laps an axis
   std::function<void(std::size_t circles)> begin_comparison = {};  // told how many circles follow
   std::function<void(const std::string& axis)> tuned = {};         // after each axis
   std::function<void()> compared = {};                             // after each circle

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/effects/effect_table.hpp"
+#include "sim/effects/given_force.hpp"
 
 namespace stiction::sim {
 namespace {
@@ -21,6 +22,7 @@ const std::vector<EffectDescriptor>& descriptors() {
 void check_names(const machine::AxisModel& axis) {
   std::vector<std::string_view> seen;
   for (const machine::Effect& effect : axis.effects) {
+    if (given_force(effect)) continue;
     check_effect(effect);
     if (!(*find_effect(effect.name))->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
       throw EffectError(effect.name, "it twice on one axis", "it once");

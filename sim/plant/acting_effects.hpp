@@ -15,6 +15,7 @@
 #include "sim/effects/effects.hpp"
 #include "sim/effects/encoder_subdivision_error/encoder_subdivision_error.hpp"
 #include "sim/effects/force_saturation/force_saturation.hpp"
+#include "sim/effects/given_force.hpp"
 #include "sim/effects/load_dependent_friction/load_dependent_friction.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "sim/plant/brake.hpp"
@@ -53,12 +54,18 @@ class ActingEffects {
         for (const machine::Effect& effect : axis.effects)
           if (effect.name == id->name)
             forces_.push_back({id->law.make_force(effect.values, carriage(axis), axis), id->law.is_friction});
+    for (const machine::Effect& effect : axis.effects)
+      if (auto law = given_force(effect)) forces_.push_back({std::make_unique<FunctionForce>(std::move(law)), false});
     for (const auto& parameters : effects_of<Backlash>(axis)) play_.emplace(parameters, position);
     for (const auto& parameters : effects_of<EncoderSubdivisionError>(axis)) reading_.emplace_back(parameters);
   }
 
   bool any() const { return !forces_.empty() || play_ || !reading_.empty() || mode_ || saturation_ || coupled(); }
   bool coupled() const { return coupling_mass_ != 0.0; }  // with the other axis
+  // Whether they are forces on the carriage alone, which advance() tells.
+  bool only_forces() const {
+    return !play_ && reading_.empty() && !mode_ && !saturation_ && !coupled() && brake_ == nullptr;
+  }
   // What moves with the encoder: of an axis with an elastic mode the measured part alone.
   Body carriage(const machine::AxisModel& axis) const { return {mode_ ? mode_->load_mass() : axis.mass, step_}; }
 
@@ -163,6 +170,15 @@ class ActingEffects {
   struct Acting {
     std::unique_ptr<CarriageForce> force;
     bool is_friction;
+  };
+  // Of a programme's own.
+  class FunctionForce : public CarriageForce {
+   public:
+    explicit FunctionForce(std::shared_ptr<const GivenForce::Law> law) : law_(std::move(law)) {}
+    double force(const CarriageState& state) const override { return (*law_)(state); }
+
+   private:
+    std::shared_ptr<const GivenForce::Law> law_;
   };
   // The shaft of an elastic `axis`, whose load is at `position`, m.
   void add_shaft(const machine::AxisModel& axis, double step, double position) {

@@ -26,7 +26,7 @@ struct TunedAxis {
   host::CompensationTuning tuning;
 };
 
-// `with_pulse`: tunes (a) too, which takes 250 laps.
+// `with_pulse`: tunes (a) too, which takes 500 laps.
 TunedAxis tune(const Truth& truth, std::size_t axis, bool with_pulse);
 
 // The machine of a tuned axis with that compensation in use.

@@ -10,6 +10,7 @@
 
 #include "firmware/machine/batch/batch.hpp"
 #include "sim/plant/batch/arithmetic.hpp"
+#include "sim/plant/batch/lane_forces.hpp"
 #include "sim/plant/batch/plant_lane.hpp"
 #include "sim/plant/encoder_mount.hpp"
 #include "sim/plant/motor.hpp"
@@ -41,7 +42,10 @@ class BatchPlant {
   static constexpr std::size_t phases = Motor<Real>::phases;
 
   explicit BatchPlant(const PlantKind& kind)
-      : steps_(kind.steps), change_(kind.change), evenly_(kind.change == 0 && kind.steps == plant_steps_per_tick) {
+      : forces_(Real::lanes),
+        steps_(kind.steps),
+        change_(kind.change),
+        evenly_(kind.change == 0 && kind.steps == plant_steps_per_tick) {
     commands_.resize(kind.commands);
   }
 
@@ -56,6 +60,10 @@ class BatchPlant {
     viscous_.set_lane(k, lane.viscous);
     voltage_limit_.set_lane(k, lane.voltage_limit);
     share_before_.set_lane(k, lane.share_before);
+  }
+  // Of the effects of `axis`, for lane `k` at rest at `position`, m; `step`: of the plant, s.
+  void set_forces(std::size_t k, const machine::AxisModel& axis, double step, double position) {
+    forces_.set(k, axis, step, position);
   }
 
   STICTION_INLINE void command(const PhaseValuesOf<Real>& voltage, Mask enable) {
@@ -72,7 +80,7 @@ class BatchPlant {
   STICTION_INLINE void advance_tick() {
     for (std::size_t k = 0; k < phases; ++k) commands_[oldest_][k] = limited(command_[k]);
     oldest_ = after(oldest_);
-    if (evenly_ && all(enabled_)) [[likely]]
+    if (evenly_ && all(enabled_) && !forces_.any()) [[likely]]
       advance_evenly();
     else
       advance_unevenly();
@@ -101,10 +109,10 @@ class BatchPlant {
   STICTION_INLINE void advance_evenly() {
     const PhaseValuesOf<Real> voltage = commands_[oldest_];
     static_assert(plant_steps_per_tick == 4);
-    step<false, true>(voltage);
-    step<false, true>(voltage);
-    step<false, true>(voltage);
-    step<false, true>(voltage);
+    step<false, true, false>(voltage);
+    step<false, true, false>(voltage);
+    step<false, true, false>(voltage);
+    step<false, true, false>(voltage);
     current_ = motor_.current();
   }
   [[gnu::noinline]] void advance_unevenly() {
@@ -117,9 +125,9 @@ class BatchPlant {
     for (int i = 0; i < steps_; ++i) {
       const auto& voltage = i >= change_ ? after_change : i + 1 < change_ ? before : between;
       if (steps_ == plant_steps_per_tick)
-        step<false, false>(voltage);
+        step<false, false, true>(voltage);
       else
-        step<true, false>(voltage);
+        step<true, false, true>(voltage);
     }
     if (!all(enabled_)) switch_off();
     current_ = motor_.current();
@@ -135,14 +143,16 @@ class BatchPlant {
     motor_ = __builtin_bit_cast(Motor<Real>, kept);
   }
 
-  // As AxisPlant's. `all_on`: no lane is off.
-  template <bool fine, bool all_on>
+  // As AxisPlant's. `all_on`: no lane is off; `effects`: lanes may have forces of their own.
+  template <bool fine, bool all_on, bool effects>
   STICTION_INLINE void step(const PhaseValuesOf<Real>& voltage) {
     Real at = velocity_;
     if constexpr (fine) at = select(enabled_, velocity_ + 0.5 * change_of_velocity_, velocity_);
     motor_force_ = motor_.advance(voltage, position_, at);
     if constexpr (!all_on) motor_force_ = select(enabled_, motor_force_, Real());
     Real on_friction = motor_force_ + external_force_;
+    if constexpr (effects)
+      if (forces_.any()) on_friction = with_forces(on_friction);
     if constexpr (fine)
       on_friction =
           select(enabled_ && velocity_ != 0.0, on_friction + 0.5 * viscous_ * change_of_velocity_, on_friction);
@@ -153,6 +163,17 @@ class BatchPlant {
     mount_.advance(change_of_velocity_);
   }
 
+  // A force on the carriage with those of the lanes' effects, for the step that begins.
+  [[gnu::noinline]] Real with_forces(Real force) {
+    std::array<double, Real::lanes> position, velocity, motor_force, applied, friction;
+    position_.store(position.data());
+    velocity_.store(velocity.data());
+    motor_force_.store(motor_force.data());
+    forces_.advance(position.data(), velocity.data(), motor_force.data(), applied.data(), friction.data());
+    return force + Real::load(applied.data()) + Real::load(friction.data());
+  }
+
+  LaneForces forces_;
   Real position_, velocity_, change_of_velocity_, motor_force_;
   Motor<Real> motor_ = zeroed<Isa, Motor<Real>>();
   Friction friction_ = zeroed<Isa, Friction>();

@@ -58,7 +58,7 @@ std::optional<PlantLane> plant_lane(const machine::Timing& timing, const machine
   const double step = timing.fast_period / timing.plant_steps;
   const ActingEffects effects(axis, step, position);
   const Encoders encoders(axis, step, timing.plant_steps * step, position);
-  if (effects.any() || encoders.any() || axis.encoder.noise > 0.0) return std::nullopt;
+  if (!effects.only_forces() || encoders.any() || axis.encoder.noise > 0.0) return std::nullopt;
   PlantLane lane;
   lane.friction = friction_numbers(make_friction(axis.friction, effects.carriage(axis)));
   if (lane.friction.empty()) return std::nullopt;

@@ -33,9 +33,9 @@ struct PlantLane {
   std::vector<double> motor, friction, mount;
 };
 
-// `axis` at rest at `position` (m) as a lane; none for an axis whose plant has more than a batch covers: effects, an
-// elastic shaft, gravity, a brake, noise, encoders of its own or a friction law without a batch. `timing`: periods of
-// the loops. Throws as AxisPlant.
+// `axis` at rest at `position` (m) as a lane; none for an axis whose plant has more than a batch covers: effects that
+// are no forces on the carriage, an elastic shaft, a brake, noise, encoders of its own or a friction law without a
+// batch. Forces of effects are those of LaneForces. `timing`: periods of the loops. Throws as AxisPlant.
 std::optional<PlantLane> plant_lane(const machine::Timing& timing, const machine::AxisModel& axis, double position);
 
 }  // namespace stiction::sim

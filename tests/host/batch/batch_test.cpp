@@ -90,11 +90,16 @@ TEST_P(EachSet, Gives256AxesOfAllKindsTheBitsOfEachAloneBehindFaultsToo) {
   }
   BatchRun run(all, GetParam());
   std::vector<sim::AxisSetPoint> points(members.size());
-  std::vector<double> force(members.size());
+  std::vector<double> force(members.size()), from_outside(members.size());
   std::set<Fault> faults;
   std::size_t limited = 0, learned = 0, pulsed = 0;
   for (int tick = 0; tick < 1500; ++tick) {
     for (std::size_t k = 0; k < members.size(); ++k) points[k] = set_point_of(members[k], tick);
+    for (std::size_t k = 0; k < members.size(); ++k) {
+      from_outside[k] = external_force_of(members[k], tick);
+      alone[k]->plant().set_external_force(from_outside[k]);
+    }
+    run.set_external_force(from_outside);
     run.tick(points);
     run.values(Row::motor_force, force);
     for (std::size_t k = 0; k < members.size(); ++k) {
@@ -124,6 +129,14 @@ TEST_P(EachSet, Gives256AxesOfAllKindsTheBitsOfEachAloneBehindFaultsToo) {
   EXPECT_GT(limited, 1000u);
   EXPECT_GT(learned, 1000u);
   EXPECT_GT(pulsed, 1000u);
+}
+
+TEST_P(EachSet, FillsABatchWithAsManyAxesAsItSays) {
+  std::mt19937_64 random(2);
+  const auto member = random_members(1, random).front();
+  const std::vector<BatchRun::Member> alike(lanes_of(GetParam()) + 1, {&member.machine, 0, member.start});
+  EXPECT_EQ(BatchRun(std::span(alike).first(alike.size() - 1), GetParam()).batches(), 1U);
+  EXPECT_EQ(BatchRun(alike, GetParam()).batches(), 2U);
 }
 
 // Message of the error that a batch of these is refused with.

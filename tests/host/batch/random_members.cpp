@@ -4,7 +4,9 @@
 #include <limits>
 #include <string>
 
+#include "sim/effects/effects.hpp"
 #include "sim/machine_file.hpp"
+#include "sim/plant/axis_plant.hpp"
 
 namespace stiction::host {
 namespace {
@@ -77,6 +79,23 @@ void vary(machine::AxisModel& axis, Draw& draw) {
   if (draw.chance(0.1)) axis.velocity_controller.gain *= 30.0;  // a loop that oscillates
 }
 
+// Up to two effects that the axis can have.
+void hide(machine::AxisModel& axis, Draw& draw) {
+  const auto all = sim::all_effects();
+  for (std::size_t k = 0, tries = 1 + draw.below(2); k < tries; ++k) {
+    const sim::EffectId id = all[draw.below(all.size())];
+    if (id->hidden.values == nullptr) continue;
+    sim::Draw values(draw.below(1000));
+    auto with = axis;
+    try {
+      with.effects.push_back(sim::effect_with(id, id->hidden.values(axis, values)));
+      const sim::AxisPlant possible({}, with, 0.0, 1);
+      axis = with;
+    } catch (const sim::EffectError&) {  // not on this one
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<RandomMember> random_members(std::size_t count, std::mt19937_64& random) {
@@ -84,7 +103,7 @@ std::vector<RandomMember> random_members(std::size_t count, std::mt19937_64& ran
   const auto machines = shipped();
   std::vector<RandomMember> members;
   while (members.size() < count) {
-    RandomMember member{machines[draw.below(machines.size())], 0.0, 0.0, 0.0, 0.0, 0.0, -1};
+    RandomMember member{machines[draw.below(machines.size())], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1};
     auto& axes = member.machine.axes;
     axes = {axes[draw.below(axes.size())]};
     auto& axis = axes.front();
@@ -107,6 +126,11 @@ std::vector<RandomMember> random_members(std::size_t count, std::mt19937_64& ran
     if (draw.chance(0.05)) member.breaks_at = static_cast<int>(draw.between(100.0, 1000.0));
     members.push_back(std::move(member));
   }
+  for (auto& member : members) {
+    auto& axis = member.machine.axes.front();
+    if (draw.chance(0.3)) member.pushed = draw.between(-0.1, 0.1) * axis.max_acceleration * axis.mass;
+    if (draw.chance(0.4)) hide(axis, draw);
+  }
   return members;
 }
 
@@ -121,5 +145,7 @@ sim::AxisSetPoint set_point_of(const RandomMember& m, int tick) {
       m.amplitude * (begun * w * s + 100.0 * (1.0 - begun) * (1.0 - c)) + m.slow * (begun + 100.0 * t * (1.0 - begun)),
       m.amplitude * w * w * c * begun, tick / 300 % 2 == 0 ? m.injected : -m.injected};
 }
+
+double external_force_of(const RandomMember& m, int tick) { return m.pushed * std::sin(0.02 * tick); }
 
 }  // namespace stiction::host

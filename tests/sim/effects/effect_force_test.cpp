@@ -8,6 +8,7 @@
 
 #include "sim/effects/force_ripple/force_ripple.hpp"
 #include "sim/effects/friction_asymmetry/friction_asymmetry.hpp"
+#include "sim/effects/given_force.hpp"
 #include "sim/effects/stribeck/stribeck.hpp"
 #include "sim/effects/viscous_nonlinear/viscous_nonlinear.hpp"
 #include "tests/sim/effects/effect_plant.hpp"
@@ -41,6 +42,24 @@ TEST(EffectForce, ASpringPullsTowardsItsNeutralPosition) {
   }
   EXPECT_LT(effect_force(axis, 0.05, 0.3), 0.0);
   EXPECT_GT(effect_force(axis, 0.05, -0.3), 0.0);
+}
+
+TEST(GivenForce, ActsAsTheEffectOfTheSameEquationWhileItIsThere) {
+  machine::AxisModel axis = with_effects({}), twin = axis;
+  twin.effects.push_back(one("position_spring", {{"stiffness", {120.0}}, {"neutral", {0.1}}}));
+  {
+    const GivenForce spring([](const CarriageState& s) { return -120.0 * (s.position - 0.1); });
+    axis.effects.push_back(spring.effect());
+    const GivenForce other([](const CarriageState&) { return 1.0; });  // which the axis does not have
+    AxisPlant given(timing, axis, 0.3, 1), built_in(timing, twin, 0.3, 1);
+    for (int k = 0; k < 1000; ++k) {
+      given.advance_tick();
+      built_in.advance_tick();
+      ASSERT_EQ(given.velocity(), built_in.velocity()) << k;
+    }
+    EXPECT_LT(given.velocity(), 0.0);
+  }
+  EXPECT_THROW(AxisPlant(timing, axis, 0.3, 1), EffectError);
 }
 
 TEST(EffectForce, ARippleFollowsItsHarmonicsInPosition) {
