@@ -7,6 +7,7 @@
 
 #include "host/cam/axis_load.hpp"
 #include "host/cli/machine_options.hpp"
+#include "host/requests/cam_choice.hpp"
 #include "sim/cam/motion.hpp"
 
 namespace stiction::host {
@@ -22,13 +23,6 @@ struct MotionOptions {
   // The one cam. Throws UsageError where the file has several and none is named.
   sim::cam::Cam one() const;
 };
-
-// The speed of a master of that kind from `text`, the value of `option`: "130 rpm", "0.5 m/s". Throws UsageError.
-double master_speed(const std::string& option, const std::string& text, sim::cam::Coordinate master);
-
-// A quantity in `unit` from `text`, the value of `option`; `example`: of what is expected. Throws UsageError.
-double cam_quantity(const std::string& option, const std::string& text, std::string_view unit,
-                    const std::string& example);
 
 // The machine of a cam, whatever controls its axes. Throws machine::MachineFileError, UsageError.
 machine::Machine machine_of_cam(const MachineOptions& options);

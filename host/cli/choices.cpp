@@ -49,4 +49,16 @@ CLI::Validator whole_number_between(int least, int most) {
       "");
 }
 
+CLI::Validator number_between(double least, double most) {
+  return CLI::Validator(
+      [least, most](const std::string& text) {
+        double value = 0.0;
+        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        const bool number = error == std::errc() && end == text.data() + text.size();
+        if (number && value >= least && value <= most) return std::string();
+        return fmt::format("found '{}'; expected a number from {} to {}", excerpt(text), least, most);
+      },
+      "");
+}
+
 }  // namespace stiction::host

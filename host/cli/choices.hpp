@@ -19,4 +19,7 @@ CLI::Validator whole_number();
 // For options that take a whole number from `least` to `most`.
 CLI::Validator whole_number_between(int least, int most);
 
+// For options that take a number from `least` to `most`.
+CLI::Validator number_between(double least, double most);
+
 }  // namespace stiction::host

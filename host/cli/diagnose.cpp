@@ -101,7 +101,9 @@ void add_diagnose(CLI::App& program, const Invocation& invocation) {
       ->check(whole_number())
       ->type_name("N")
       ->capture_default_str();
-  add_out(*command, o->out, "write verdict.json, extended.toml, report.html and next_measurement.csv into this folder");
+  add_out(*command, o->out,
+          "write verdict.json, extended.toml, report.html, next_measurement.csv and, of a cam, "
+          "next_measurement_cam.toml into this folder");
   command->add_flag("--json", o->json, "print the verdict as JSON on standard output");
   command->callback([o, &invocation] {
     try {

@@ -6,6 +6,7 @@
 #include "host/diagnose/verdict/verdict_json.hpp"
 #include "host/log/csv_log.hpp"
 #include "host/report/diagnosis_report.hpp"
+#include "sim/cam/motion_file.hpp"
 #include "sim/machine_file.hpp"
 
 namespace stiction::host {
@@ -42,6 +43,14 @@ std::string next_measurement_csv(const NextMeasurement& next, const Invocation& 
   return csv_log_text(log);
 }
 
+std::string next_measurement_cam(const NextMeasurement& next, const std::string& axis, const Invocation& invocation) {
+  return fmt::format(
+      "# The cam to record next: {} cycles with the master at {}, once it turns steadily.\n# {}\n# made by: {}\n# In "
+      "the simulation, from this folder: {}\n\n{}",
+      next.cam->cycles, next.cam->speed, next.note, invocation.command_line, next_measurement_command(next, axis),
+      sim::cam::motion_text({next.cam->cam}));
+}
+
 void write_folder(const std::vector<Verdict>& verdicts, const machine::Machine& machine, const DiagnosedFile& file,
                   const std::string& out, const Invocation& invocation, const Origin& origin) {
   PendingFolder folder(out, invocation.command);
@@ -53,8 +62,10 @@ void write_folder(const std::vector<Verdict>& verdicts, const machine::Machine& 
     const auto axis = suffix_of(verdict, verdicts.size());
     if (verdict.next && verdict.next->log)
       folder.write(next_measurement_file_of(axis), next_measurement_csv(*verdict.next, invocation));
+    if (verdict.next && verdict.next->cam)
+      folder.write(next_measurement_cam_of(axis), next_measurement_cam(*verdict.next, axis, invocation));
     folder.write(diagnosis_page_of(axis), diagnosis_report_html({invocation.command_line, invocation.version, machine,
-                                                                 verdict, origin_of_axis(origin, verdict.axis)}));
+                                                                 verdict, origin_of_axis(origin, verdict.axis), axis}));
   }
   if (verdicts.size() > 1)
     folder.write("report.html",
@@ -74,8 +85,12 @@ void put_out(const std::vector<Verdict>& verdicts, const machine::Machine& machi
   for (const auto& verdict : verdicts) {
     if (verdicts.size() > 1) fmt::print("{}axis {}\n", &verdict == &verdicts.front() ? "" : "\n", verdict.axis);
     fmt::print("{}", verdict_text(verdict));
-    if (!out.empty() && verdict.next && verdict.next->log)
-      fmt::print("\nset-points to record: {}/{}", out, next_measurement_file_of(suffix_of(verdict, verdicts.size())));
+    const auto axis = suffix_of(verdict, verdicts.size());
+    if (!out.empty() && verdict.next && verdict.next->cam)
+      fmt::print("\ncam to record: {}/{}\nin simulation, from that folder: {}", out, next_measurement_cam_of(axis),
+                 next_measurement_command(*verdict.next, axis));
+    else if (!out.empty() && verdict.next && verdict.next->log)
+      fmt::print("\nset-points to record: {}/{}", out, next_measurement_file_of(axis));
   }
   if (!out.empty())
     fmt::print("\nverdict: {0}/verdict.json\nmachine file: {0}/extended.toml\nreport: {0}/report.html\n", out);

@@ -3,32 +3,23 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <memory>
-#include <thread>
+#include <mutex>
+#include <optional>
 
-#include "firmware/machine/file/machine_file.hpp"
-#include "firmware/machine/file/whole_file.hpp"
 #include "host/cli/choices.hpp"
 #include "host/cli/commands.hpp"
-#include "host/cli/errors.hpp"
 #include "host/cli/output.hpp"
 #include "host/cli/progress.hpp"
 #include "host/cli/temporaries.hpp"
 #include "host/fleet/results.hpp"
-#include "host/report/fleet_report.hpp"
-#include "host/sweep/run.hpp"
+#include "host/requests/fleet_request.hpp"
 
 namespace stiction::host {
 namespace {
 
 struct FleetOptions {
-  std::string list;
-  std::string out;
-  int threads = 0;
-  double false_alarms = 0.005;
-  bool full = false;
-  bool without_diagnosis = false;
+  FleetRequest request;
   bool json = false;
 };
 
@@ -93,37 +84,24 @@ std::string fleet_text(const FleetResult& result, const nlohmann::ordered_json& 
 }
 
 void run(const FleetOptions& options, const Invocation& invocation) {
-  auto list = read_fleet_list(options.list);
-  const FleetFolder folder(options.out);
-  say_when_interrupted(fmt::format("stiction: interrupted; the same command goes on in {}\n", options.out));
-  FleetSettings settings;
-  settings.version = invocation.version;
-  settings.threads =
-      options.threads > 0 ? static_cast<unsigned>(options.threads) : std::max(std::thread::hardware_concurrency(), 1U);
-  settings.false_alarms = options.false_alarms;
-  settings.diagnose_alarms = !options.without_diagnosis;
-  settings.diagnose_all = options.full;
-  FleetResult result;
-  {
-    FleetProgress progress;
-    settings.progress = [&](const std::string& step, std::size_t done, std::size_t all) {
-      progress.reach(step, done, all);
-    };
-    result = run_fleet(std::move(list), folder, settings);
-  }
-  const auto json = fleet_json(result);
-  put_file(folder.path() / "fleet.csv", fleet_csv(result));
-  write_fleet_npz(result, folder.path() / "fleet.npz");
-  put_file(folder.path() / "report.html", fleet_report_html({invocation.command_line, invocation.version, result}));
-  put_file(folder.path() / "fleet.json", json.dump(2) + "\n");
+  const auto& out = options.request.out;
+  FleetHooks hooks{invocation.version, invocation.command_line};
+  hooks.begin = [&] {
+    say_when_interrupted(fmt::format("stiction: interrupted; the same command goes on in {}\n", out));
+  };
+  auto progress = std::make_optional<FleetProgress>();
+  hooks.progress = [&](const std::string& step, std::size_t done, std::size_t all) {
+    progress->reach(step, done, all);
+  };
+  const auto [result, json] = fleet_request(options.request, hooks);
+  progress.reset();
   say_when_interrupted({});
   if (options.json) {
     fmt::print("{}\n", json.dump(2));
     return;
   }
   fmt::print("{}", fleet_text(result, json));
-  fmt::print("\nestimates: {0}/fleet.csv, {0}/fleet.npz\nsummary: {0}/fleet.json\nreport: {0}/report.html\n",
-             options.out);
+  fmt::print("\nestimates: {0}/fleet.csv, {0}/fleet.npz\nsummary: {0}/fleet.json\nreport: {0}/report.html\n", out);
 }
 
 }  // namespace
@@ -133,37 +111,32 @@ void add_fleet(CLI::App& program, const Invocation& invocation) {
       "fleet", "trends of mass and friction of many axes from their records over months, with alarms");
   auto o = std::make_shared<FleetOptions>();
   command
-      ->add_option("list", o->list,
+      ->add_option("list", o->request.list,
                    "list of records (CSV with the columns axis, machine, date, log; or TOML), or a folder with "
                    "fleet.csv or fleet.toml")
       ->required()
       ->type_name("LIST");
   command
-      ->add_option("--out", o->out,
+      ->add_option("--out", o->request.out,
                    "folder of fleet.json, fleet.csv, fleet.npz and report.html; records that it has judged are not "
                    "judged again")
       ->required()
       ->type_name("DIR");
-  command->add_option("--threads", o->threads, "threads [all processors]")
+  command->add_option("--threads", o->request.threads, "threads [all processors]")
       ->check(whole_number_between(1, 1024))
       ->type_name("N");
   command
-      ->add_option("--false-alarms", o->false_alarms,
+      ->add_option("--false-alarms", o->request.false_alarms,
                    "false alarms that are expected of an axis in a year, all parameters together (1e-6 to 1)")
-      ->check(CLI::Range(1e-6, 1.0))
+      ->check(number_between(1e-6, 1.0))
       ->type_name("RATE")
       ->capture_default_str();
-  auto* full = command->add_flag("--full", o->full, "diagnose every record, not only those that alarm; takes longer");
-  command->add_flag("--no-diagnosis", o->without_diagnosis, "diagnose no record, not even those that alarm")
+  auto* full =
+      command->add_flag("--full", o->request.full, "diagnose every record, not only those that alarm; takes longer");
+  command->add_flag("--no-diagnosis", o->request.without_diagnosis, "diagnose no record, not even those that alarm")
       ->excludes(full);
   command->add_flag("--json", o->json, "print the summary as JSON on standard output");
-  command->callback([o, &invocation] {
-    try {
-      run(*o, invocation);
-    } catch (const machine::UnreadableFile& error) {
-      throw UsageError(error.what());
-    }
-  });
+  command->callback([o, &invocation] { run(*o, invocation); });
 }
 
 }  // namespace stiction::host

@@ -8,9 +8,9 @@ namespace stiction::host {
 namespace {
 
 // One of the first two marks a folder without a record as a result.
-constexpr std::array usual_names{"result.json",     "verdict.json", "report.html",  "extended.toml",
-                                 "identified.toml", "tuned.toml",   "machine.toml", "next_measurement.csv",
-                                 "trace.csv",       "hidden.toml"};
+constexpr std::array usual_names{
+    "result.json",  "verdict.json",         "report.html", "extended.toml", "identified.toml",          "tuned.toml",
+    "machine.toml", "next_measurement.csv", "trace.csv",   "hidden.toml",   "next_measurement_cam.toml"};
 constexpr std::size_t marks = 2;
 
 }  // namespace

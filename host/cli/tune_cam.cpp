@@ -224,6 +224,7 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
     const auto task = shaping_task(motion, sim::cam::elastic_drive_of(axis), speed, 0.2, {});
     const sim::cam::TunerSettings settings{.resolution = axis.second_encoder->increment / radius,
                                            .share_of_limits = shares_of_limits(load, speed),
+                                           .largest_force = load.effort_left(),
                                            .running = options.running};
     sim::cam::Cam tuned;
     std::optional<sim::cam::Cam> steady;
@@ -243,7 +244,7 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
         auto record = !logs.empty()     ? record_of(logs[c], axis, now, task, settings.resolution, options.running)
                       : options.running ? simulated_running_record(machine, run, speed, c + 1)
                                         : simulated_record(machine, now, speed, c + 1);
-        cycles.push_back({std::move(record), {}});
+        cycles.push_back({std::move(record), {}, tuner.pulses()});
         auto& learned = cycles.back().learned;
         try {
           learned = tuner.done() ? tuner.follow(cycles.back().record, false) : tuner.learn(cycles.back().record);
@@ -256,7 +257,7 @@ void run_tuning(const TuneCamOptions& options, const Invocation& invocation) {
       }
       tuned = tuner.cam();
       steady = tuner.steady_cam();
-      result = tuning_report(task, tuner, cycles);
+      result = tuning_report(task, tuner, cycles, options.running);
     }
     require_within_limits(sim::cam::compose(tuned), load, speed);
     if (steady) require_within_limits(sim::cam::compose(*steady), load, speed);

@@ -95,7 +95,7 @@ void add_tune_friction(CLI::App& program, const Invocation& invocation) {
       ->add_option("--show", o->shown,
                    "feed of the charts, at which the speed pulse is tuned [16 m/min, or a third of the fastest feed]")
       ->type_name("FEED");
-  command->add_flag("--no-pulse", o->no_pulse, "omit the speed pulse, whose tuning takes 250 simulated laps per axis");
+  command->add_flag("--no-pulse", o->no_pulse, "omit the speed pulse, whose tuning takes 500 simulated laps per axis");
   add_out(*command, o->out, "write tuned.toml, report.html and result.json into this folder");
   command->add_flag("--json", o->json, "print the figures as JSON on standard output");
   command->callback([o, &invocation] { run(*o, invocation); });

@@ -42,6 +42,7 @@ class Worker {
     stop_ = true;
   }
   std::exception_ptr join() {
+    const py::gil_scoped_release release;  // a thread that has called Python takes its leave of it
     thread_.join();
     return failure_;
   }
@@ -50,7 +51,7 @@ class Worker {
   void report(std::string words, bool told) {
     const std::lock_guard lock(mutex_);
     if (stop_) throw Stopped();
-    if (!told) return;
+    if (!told || words.empty()) return;
     reports_.push_back(std::move(words));
     changed_.notify_all();
   }

@@ -9,7 +9,8 @@
 
 namespace stiction::python {
 
-// Tells the interpreter's thread of `words`. Throws when the work is to end; called from any thread of the work.
+// Tells the interpreter's thread of `words`, if there are any. Throws when the work is to end; called from any thread
+// of the work.
 using Report = std::function<void(std::string words)>;
 
 // Runs `work` to its end, or to its next report after Ctrl-C or an exception of `progress`, and throws what it threw,

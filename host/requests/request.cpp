@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <charconv>
+#include <limits>
 
 #include "firmware/machine/file/machine_file.hpp"
 #include "host/diagnose/diagnose.hpp"
@@ -17,62 +17,31 @@
 #include "host/output/experiment_output.hpp"
 #include "host/output/identify_output.hpp"
 #include "host/requests/axis_choice.hpp"
+#include "host/requests/given_force.hpp"
 #include "host/requests/identify_request.hpp"
 #include "host/requests/names.hpp"
+#include "host/requests/request_texts.hpp"
+#include "host/requests/run_answers.hpp"
 #include "host/requests/run_options.hpp"
 #include "host/requests/tuning_options.hpp"
 #include "host/requests/usage_error.hpp"
 #include "host/simulate/friction_choice.hpp"
-#include "host/simulate/loaded_machine.hpp"
 #include "host/simulate/machine_needs.hpp"
 #include "host/tune/tuning_result.hpp"
 
 namespace stiction::host {
 namespace {
 
-// What a request says, option by option.
-class Texts {
- public:
-  explicit Texts(const Request& request) : request_(request) {}
-  std::string text(std::string_view name, std::string usual = {}) const {
-    for (const auto& [key, value] : request_.options)
-      if (key == name) return value;
-    return usual;
-  }
-  std::vector<std::string> all(std::string_view name) const {
-    std::vector<std::string> values;
-    for (const auto& [key, value] : request_.options)
-      if (key == name) values.push_back(value);
-    return values;
-  }
-  bool flag(std::string_view name) const {
-    const auto found = text(name, "false");
-    if (found != "true" && found != "false")
-      throw UsageError(fmt::format("--{}: found '{}'; expected true or false", name, found));
-    return found == "true";
-  }
-
- private:
-  const Request& request_;
-};
-
-machine::Machine machine_of(const Request& request, const std::string& experiment, const MachineNeeds& needs) {
-  const Texts texts(request);
-  auto set = request.set;
-  if (const auto kind = texts.text("compensation"); !kind.empty()) set.push_back(compensation_assignment(kind));
-  return load_machine(request.machine, set, experiment, needs, needs.one_axis ? texts.text("axis") : "");
-}
-
-Answer circle(const Request& request, const RequestProgress& progress) {
-  const Texts texts(request);
+RequestAnswer circle(const Request& request, const RequestProgress& progress) {
+  const RequestTexts texts(request);
   const auto plan = circle_plan(machine_of(request, "circle", needs_of("circle")),
                                 {texts.text("friction"), texts.text("feed"), texts.text("direction", "ccw"),
                                  texts.text("radius"), texts.text("signals", "fixed")});
-  Answer answer{circle_json(run_circles(plan,
-                                        [&] {
-                                          if (progress) progress("circle");
-                                        }),
-                            plan.machine)};
+  RequestAnswer answer{circle_json(run_circles(plan,
+                                               [&] {
+                                                 if (progress) progress("circle");
+                                               }),
+                                   plan.machine)};
   if (!request.keep_logs) return answer;
   for (const auto& each : cases_of(plan)) {
     const bool clockwise = each.settings.direction == sim::Direction::clockwise;
@@ -90,15 +59,15 @@ const Experiment& experiment_of(const std::string& command) {
                                [&](const Experiment& each) { return command == std::string("simulate ") + each.name; });
 }
 
-Answer experiment(const Request& request, const RequestProgress& progress) {
+RequestAnswer experiment(const Request& request, const RequestProgress& progress) {
   const auto& which = experiment_of(request.command);
-  const Texts texts(request);
+  const RequestTexts texts(request);
   auto input =
       experiment_input(which, machine_of(request, which.name, needs_of(which.name)),
                        {texts.text("friction"), texts.text("feed"), texts.text("equations"), texts.text("jerk")});
   if (request.keep_logs && !which.keeps_logs)
     throw UsageError(fmt::format("{}: found that logs are wanted; expected none, as it keeps none", request.command));
-  Answer answer;
+  RequestAnswer answer;
   if (request.keep_logs)
     input.keep_log = [&](const std::string& run, Log log) {
       answer.logs.push_back({run, std::move(log)});
@@ -108,8 +77,8 @@ Answer experiment(const Request& request, const RequestProgress& progress) {
   return answer;
 }
 
-Answer identification(const Request& request, const RequestProgress& progress) {
-  const Texts texts(request);
+RequestAnswer identification(const Request& request, const RequestProgress& progress) {
+  const RequestTexts texts(request);
   const auto machine = machine_of(request, "", needs_of("identify"));
   const auto [axis, linear, logs] =
       identify_request({request.logs, texts.text("columns"), texts.text("axis"), texts.text("friction"),
@@ -122,18 +91,10 @@ Answer identification(const Request& request, const RequestProgress& progress) {
   return {identification_json(in_own_units(linear, *axis))};
 }
 
-std::uint64_t whole_number_of(const std::string& option, const std::string& text) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error == std::errc() && end == text.data() + text.size()) return number;
-  throw UsageError(fmt::format("--{}: found '{}'; expected a whole number from 0 to {}", option, text,
-                               std::numeric_limits<std::uint64_t>::max()));
-}
-
-Answer diagnosis(const Request& request, const RequestProgress& progress) {
-  const Texts texts(request);
+RequestAnswer diagnosis(const Request& request, const RequestProgress& progress) {
+  const RequestTexts texts(request);
   DiagnoseInput input;
-  input.seed = whole_number_of("seed", texts.text("seed", "1"));
+  input.seed = texts.number("seed", 1, 0, std::numeric_limits<std::uint64_t>::max());
   input.machine = machine_of(request, "", needs_of("diagnose"));
   input.logs = logs_of(request.logs, texts.text("columns"));
   input.held_out = logs_of(texts.all("holdout"), texts.text("columns"));
@@ -151,8 +112,8 @@ Answer diagnosis(const Request& request, const RequestProgress& progress) {
   return {verdict_json(verdicts)};
 }
 
-Answer tuning(const Request& request, const RequestProgress& progress) {
-  const Texts texts(request);
+RequestAnswer tuning(const Request& request, const RequestProgress& progress) {
+  const RequestTexts texts(request);
   const auto machine = machine_of(request, "", needs_of(""));
   const auto logs = logs_of(request.logs, texts.text("columns"));
   auto settings = tuning_settings({texts.text("axis"), texts.text("feed"), texts.text("show"), texts.flag("no-pulse")},
@@ -168,7 +129,7 @@ Answer tuning(const Request& request, const RequestProgress& progress) {
 struct Command {
   std::string name;
   std::vector<std::string> options;
-  Answer (*run)(const Request& request, const RequestProgress& progress);
+  RequestAnswer (*run)(const Request& request, const RequestProgress& progress);
   enum class Logs { none, may, must } logs = Logs::none;
 };
 
@@ -189,6 +150,12 @@ const std::vector<Command>& commands() {
     using Logs = Command::Logs;
     std::vector<Command> table{
         {"simulate circle", {"compensation", "friction", "feed", "direction", "radius", "signals"}, circle},
+        {"simulate cam", {"axis", "cam", "name", "speed", "cycles", "master", "model", "verification"}, answer_cam},
+        {"simulate replay", {"axis", "columns", "friction", "signals"}, answer_replay, Logs::must},
+        {"simulate frequency-response",
+         {"axis", "loop", "columns", "friction", "signal", "speed", "amplitude", "lowest", "periods", "passes"},
+         answer_response,
+         Logs::may},
         {"identify", {"axis", "columns", "friction", "amperes", "fix", "refine"}, identification, Logs::must},
         {"diagnose", {"axis", "columns", "holdout", "seed"}, diagnosis, Logs::must},
         {"tune-friction", {"axis", "columns", "feed", "show", "no-pulse"}, tuning, Logs::may}};
@@ -203,6 +170,19 @@ const Command& command_of(const std::string& name) {
   return *std::ranges::find(commands(), name, &Command::name);
 }
 
+// An experiment without an axis in closed loop would run, and never ask for the forces.
+RequestAnswer answer_with_forces(const Command& command, Request request, const RequestProgress& progress) {
+  for (auto& force : request.forces) force.watch = std::make_shared<WatchedForce>(force.axis, force.force);
+  auto answer = command.run(request, progress);
+  for (const auto& force : request.forces)
+    if (!force.watch->asked())
+      throw UsageError(
+          fmt::format("{}: found an effect on axis {}, which no run has asked for; expected an experiment "
+                      "with that axis in closed loop",
+                      command.name, force.axis));
+  return answer;
+}
+
 }  // namespace
 
 std::vector<std::string> request_commands() {
@@ -213,7 +193,7 @@ std::vector<std::string> request_commands() {
 
 std::vector<std::string> request_options(const std::string& command) { return command_of(command).options; }
 
-Answer answer(const Request& request, const RequestProgress& progress) {
+RequestAnswer answer(const Request& request, const RequestProgress& progress) {
   const auto& command = command_of(request.command);
   for (const auto& [name, value] : request.options) {
     require_known(command.name, name, "an option among", command.options);
@@ -224,9 +204,12 @@ Answer answer(const Request& request, const RequestProgress& progress) {
     throw UsageError(fmt::format("{}: found {} logs; expected none", command.name, request.logs.size()));
   if (command.logs == Command::Logs::must && request.logs.empty())
     throw UsageError(fmt::format("{}: found no log; expected at least one", command.name));
-  if (command.run != circle && command.run != experiment && request.keep_logs)
+  const bool simulates = command.name.starts_with("simulate ");
+  if (!simulates && request.keep_logs)
     throw UsageError(fmt::format("{}: found that logs are wanted; expected it of simulations alone", command.name));
-  return command.run(request, progress);
+  if (request.forces.empty()) return command.run(request, progress);
+  if (!simulates) throw UsageError(fmt::format("{}: found effects; expected them of simulations alone", command.name));
+  return answer_with_forces(command, request, progress);
 }
 
 std::vector<LogColumn> columns_of(const Log& log) {

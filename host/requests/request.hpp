@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -13,6 +14,22 @@
 
 namespace stiction::host {
 
+// What a force on an axis may depend on, at the beginning of a step of the plant: s, m, m/s and N; of a rotary axis
+// rad, rad/s and N m.
+struct AxisState {
+  double time, position, velocity, motor_force;
+};
+using AxisForce = std::function<double(const AxisState&)>;  // N or N m, positive in the direction of the position
+
+// A force on an axis that a caller gives. It is asked once or several times a step, from any thread: its value depends
+// on the state alone. What it throws ends the request.
+class WatchedForce;
+struct RequestForce {
+  std::string axis;
+  AxisForce force;
+  std::shared_ptr<WatchedForce> watch{};  // of answer() itself
+};
+
 struct Request {
   std::string command;                                         // "simulate circle"
   std::string machine;                                         // shipped, by name, or a path
@@ -20,6 +37,7 @@ struct Request {
   std::vector<std::string> logs{};                             // files, of a command that reads logs
   std::vector<std::pair<std::string, std::string>> options{};  // {"feed", "16 m/min"}; of a flag {"refine", "true"}
   bool keep_logs = false;                                      // of simulations: every run as a log in memory
+  std::vector<RequestForce> forces{};                          // of simulations: on the plants, with their effects
 };
 
 struct KeptLog {
@@ -27,7 +45,7 @@ struct KeptLog {
   Log log;
 };
 
-struct Answer {
+struct RequestAnswer {
   nlohmann::ordered_json document;
   std::vector<KeptLog> logs{};
 };
@@ -42,8 +60,9 @@ std::vector<std::string> request_commands();
 std::vector<std::string> request_options(const std::string& command);
 
 // Runs `request`. `progress` may be empty. Throws what the command's own functions throw: UsageError for a command, an
-// option or a text that is not known, machine::MachineFileError, LogError, InfeasibleMotion, FaultTripped.
-Answer answer(const Request& request, const RequestProgress& progress = {});
+// option or a text that is not known, for a force that no plant of the command has, machine::MachineFileError,
+// LogError, InfeasibleMotion, FaultTripped.
+RequestAnswer answer(const Request& request, const RequestProgress& progress = {});
 
 // Columns of a log in the order of its file: name ("X.x"), unit ("m"), values.
 struct LogColumn {

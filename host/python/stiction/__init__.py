@@ -4,8 +4,10 @@ Every function calls the library that the command of the same name calls; option
 "-") and its texts, "16 m/min". docs/python.md has examples.
 """
 
+import inspect as _inspect
 import json as _json
 import os as _os
+import tempfile as _tempfile
 from collections.abc import Mapping as _Mapping
 
 import numpy as _np
@@ -15,8 +17,8 @@ from ._core import BENCH_STEP, Error, Fault, InputError, Machine
 
 __version__ = _core.version()
 __all__ = ["BENCH_STEP", "Error", "Fault", "InputError", "Log", "Machine", "Result", "batch", "bench", "commands",
-           "diagnose", "identify", "instruction_sets", "machine", "options", "read_log", "read_segments",
-           "shipped_machines", "simulate", "tune_friction"]
+           "diagnose", "fleet", "frequency_response", "identify", "instruction_sets", "machine", "options", "read_log",
+           "read_segments", "replay", "shipped_machines", "simulate", "tune_friction"]
 
 shipped_machines = _core.shipped_machines
 instruction_sets = _core.instruction_sets
@@ -86,11 +88,15 @@ class Log(_Mapping):
 
 
 class Result(dict):
-    """The document that the command prints with --json; `logs` has the runs that were kept, in their order."""
+    """The document that the command prints with --json.
 
-    def __init__(self, document, logs=()):
+    `logs` has the runs that were kept, in their order; `arrays` the columns of a fleet's estimates, by name.
+    """
+
+    def __init__(self, document, logs=(), arrays=()):
         super().__init__(document)
         self.logs = list(logs)
+        self.arrays = dict(arrays)
 
 
 def _names(values):
@@ -124,7 +130,33 @@ def _text(value):
 _REPEATED = ("fix", "holdout")  # options that may be given several times
 
 
-def _answer(command, on, logs, options, keep_logs, progress, set):
+_OF_EFFECTS = "time, position, speed, motor_force"
+
+
+def _functions(effects):
+    """The functions of `effects` as pairs of axis and function, each of which takes the arguments of an effect."""
+    pairs = []
+    for axis, functions in (effects or {}).items():
+        for function in functions if isinstance(functions, (list, tuple)) else [functions]:
+            if not callable(function):
+                raise InputError(f"effect on axis {axis}: found {type(function).__name__}; expected a function of "
+                                 f"({_OF_EFFECTS})")
+            try:
+                signature = _inspect.signature(function)
+            except (TypeError, ValueError):  # of C, without a signature: the call itself will tell
+                signature = None
+            try:
+                if signature is not None:
+                    signature.bind(0.0, 0.0, 0.0, 0.0)
+            except TypeError:
+                name = getattr(function, "__name__", type(function).__name__)
+                raise InputError(f"effect on axis {axis}: found {name}{signature}; expected a function of "
+                                 f"({_OF_EFFECTS})") from None
+            pairs.append((axis, function))
+    return pairs
+
+
+def _answer(command, on, logs, options, keep_logs, progress, set, effects=None):
     pairs = []
     for name, value in options.items():
         if value is None:
@@ -132,19 +164,41 @@ def _answer(command, on, logs, options, keep_logs, progress, set):
         name = name.replace("_", "-")
         for each in _names(value) if name in _REPEATED else [value]:
             pairs.append((name, _text(each)))
-    document, kept = _core.answer(command, machine(on, set), _names(logs), pairs, keep_logs, progress)
+    document, kept = _core.answer(command, machine(on, set), _names(logs), pairs, keep_logs, _functions(effects),
+                                    progress)
     return Result(_json.loads(document), [Log(log, run) for run, log in kept])
 
 
-def simulate(experiment, machine, *, set=None, logs=False, progress=None, **options):
+def simulate(experiment, machine, *, set=None, logs=False, effects=None, progress=None, **options):
     """`stiction simulate EXPERIMENT`: the firmware controls the simulated machine.
 
-    experiment: "circle", "l-shape", ... (commands() lists all); machine: a Machine, a name or a path; set: assignments
-    for this call; options: those of the command, friction="lugre", feed=["8 m/min", "16 m/min"]. logs=True keeps every
-    run as a Log in Result.logs. progress is called with a text now and then; what it raises ends the call, as Ctrl-C
-    does.
+    experiment: "circle", "l-shape", "cam", ... (commands() lists all); machine: a Machine, a name or a path; set:
+    assignments for this call; options: those of the command, friction="lugre", feed=["8 m/min", "16 m/min"]. logs=True
+    keeps every run as a Log in Result.logs. progress is called with a text now and then; what it raises ends the call,
+    as Ctrl-C does.
+
+    effects: {"X": function}, or a list of functions an axis: forces on the carriage in addition to the effects of
+    the machine file. A function takes (time, position, speed, motor_force), s, m, m/s and N, at the beginning of
+    a step of the plant, and returns a force in N, positive in the direction of the position; of a rotary axis it is
+    rad, rad/s and N m. It is called once or several times in each of the four steps of a tick, also by several runs at
+    once, so its value must depend on its arguments alone. This is the slow path, for studies. What a function raises
+    ends the call.
     """
-    return _answer(f"simulate {experiment}", machine, [], options, logs, progress, set)
+    return _answer(f"simulate {experiment}", machine, [], options, logs, progress, set, effects)
+
+
+def replay(log, machine, *, set=None, logs=False, effects=None, progress=None, **options):
+    """`stiction simulate replay`: the set-points of a log (a path) through the simulated machine, against what the log
+    has measured. logs=True keeps the simulated log of each friction model; effects: as of simulate()."""
+    return _answer("simulate replay", machine, log, options, logs, progress, set, effects)
+
+
+def frequency_response(machine, log=None, *, set=None, logs=False, effects=None, progress=None, **options):
+    """`stiction simulate frequency-response`: the loops of a simulated machine, or of a log (a path) with a test signal.
+
+    logs=True keeps the log of the simulated test; effects: as of simulate().
+    """
+    return _answer("simulate frequency-response", machine, log, options, logs, progress, set, effects)
 
 
 def identify(logs, machine, *, set=None, progress=None, **options):
@@ -160,6 +214,22 @@ def diagnose(logs, machine, *, set=None, progress=None, **options):
 def tune_friction(machine, logs=None, *, set=None, progress=None, **options):
     """`stiction tune-friction`: the friction compensation tuned, and compared before and after."""
     return _answer("tune-friction", machine, logs, options, False, progress, set)
+
+
+def fleet(list, out=None, *, threads=0, false_alarms=0.005, full=False, diagnosis=True, progress=None):
+    """`stiction fleet`: trends of mass and friction of many axes from their records over months, with alarms.
+
+    list: a path of a list of records (docs/scale.md), or of its folder; out: the folder of the results, in which judged
+    records are kept for the next call; None: nothing is kept. threads: 0 for all processors; false_alarms: expected of
+    an axis in a year; full: diagnose every record; diagnosis=False: diagnose none. Result.arrays has the estimates, an
+    array a column ("axis", "date", "parameter", "value", "standard_error", "deviation", ...), a row for each record and
+    parameter.
+    """
+    with _tempfile.TemporaryDirectory(prefix="stiction-fleet-") as place:
+        folder = place if out is None else _os.fspath(out)
+        document = _core.fleet(_os.fspath(list), folder, threads, false_alarms, full, not diagnosis, progress)
+        with _np.load(_os.path.join(folder, "fleet.npz"), allow_pickle=False) as table:
+            return Result(_json.loads(document), arrays={name: table[name] for name in table.files})
 
 
 def commands():

@@ -9,6 +9,8 @@ Array = npt.NDArray[np.float64]
 Path = str | PathLike[str]
 Texts = Path | Iterable[Path]
 Progress = Callable[[str], Any]
+Effect = Callable[[float, float, float, float], float]
+Effects = Mapping[str, Effect | Sequence[Effect]]
 
 __version__: str
 BENCH_STEP: float
@@ -55,13 +57,21 @@ class Log(Mapping[str, Array]):
 
 class Result(dict[str, Any]):
     logs: list[Log]
+    arrays: dict[str, npt.NDArray[Any]]
 
 class Law(Protocol):
     def advance(self, velocity: float, force: float) -> float: ...
 
 def machine(name_or_path: Machine | Path, set: str | Iterable[str] | None = ...) -> Machine: ...
 def simulate(experiment: str, machine: Machine | Path, *, set: str | Iterable[str] | None = ..., logs: bool = ...,
-             progress: Progress | None = ..., **options: Any) -> Result: ...
+             effects: Effects | None = ..., progress: Progress | None = ..., **options: Any) -> Result: ...
+def replay(log: Path, machine: Machine | Path, *, set: str | Iterable[str] | None = ..., logs: bool = ...,
+           effects: Effects | None = ..., progress: Progress | None = ..., **options: Any) -> Result: ...
+def frequency_response(machine: Machine | Path, log: Path | None = ..., *, set: str | Iterable[str] | None = ...,
+                       logs: bool = ..., effects: Effects | None = ..., progress: Progress | None = ...,
+                       **options: Any) -> Result: ...
+def fleet(list: Path, out: Path | None = ..., *, threads: int = ..., false_alarms: float = ..., full: bool = ...,
+          diagnosis: bool = ..., progress: Progress | None = ...) -> Result: ...
 def identify(logs: Texts, machine: Machine | Path, *, set: str | Iterable[str] | None = ...,
              progress: Progress | None = ..., **options: Any) -> Result: ...
 def diagnose(logs: Texts, machine: Machine | Path, *, set: str | Iterable[str] | None = ...,

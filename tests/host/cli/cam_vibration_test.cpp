@@ -211,6 +211,12 @@ TEST_F(CamVibrationCli, SaysWhatALogLacksThatCannotBeTunedFrom) {
             if (t > 0.0) at[load] += 0.008 * std::exp(-1.2 * t) * std::sin(2.0 * std::numbers::pi * 18.0 * t);
             return true;
           });
+  // Nearer, where even that there are two is not seen but by their beat, while it rises.
+  refused("beat.csv", "a vibration at about 14.38 Hz that grows in the dwell", [](Values& at) {
+    const double t = at[time] - rise;
+    if (t > 0.0) at[load] -= 0.008 * std::exp(-1.2 * t) * std::cos(2.0 * std::numbers::pi * 16.2 * t);
+    return true;
+  });
   refused("stopped.csv", "a master that stops at", [](Values& at) {
     // For 100 ms from the first third on.
     const double stop = 0.6 * rise, turned = at[master] / at[time];

@@ -40,13 +40,14 @@ TEST_F(DiagnoseAxes, JudgesEachAxisThatLogAndMachineShare) {
   EXPECT_EQ(one["baseline"], both["axes"]["Y"]["baseline"]);
 }
 
-// Half of the mass: the file explains little of the force. It is diagnosed all the same, and from identified values it
-// is the machine again.
+// Half of the mass: the file explains little of the force. It is diagnosed all the same, though not by its name: on a
+// circle, of one frequency, a mass is a spring as well, or a force over the position. From identified values it is the
+// machine again.
 TEST_F(DiagnoseAxes, StartsFromIdentifiedValues) {
   make_record();
   const std::string file = "run.csv --machine mcfv5050ln --axis X --set axis.X.mass='90 kg'";
   const auto as_it_is = verdict_of(file);
-  EXPECT_EQ(as_it_is["status"], "does not agree");
+  EXPECT_FALSE(as_it_is["findings"].empty());
   EXPECT_FALSE(as_it_is.contains("identified"));
   const auto identified = verdict_of(file + " --identify --out start");
   ASSERT_FALSE(identified["identified"].empty());

@@ -4,8 +4,8 @@
 namespace stiction::test {
 namespace {
 
-// Seconds on any machine: 250 laps of a circle.
-const std::string slow = "tune-friction --machine mcfv5050ln --axis X --feed '3.2 m/min'";
+// Seconds on any machine: 1000 laps of a circle.
+const std::string slow = "tune-friction --machine mcfv5050ln";
 
 TEST_F(Cli, ATerminalShowsProgressAndTheLineIsWiped) {
   const auto result = run_shell("script -qec \"'{}' " + slow + "\" /dev/null </dev/null");

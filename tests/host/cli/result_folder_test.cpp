@@ -60,7 +60,7 @@ TEST_F(Cli, AResultOfAVersionWithoutRecordsIsKnownByItsNames) {
 }
 
 TEST_F(Cli, AnInterruptedCommandLeavesNothing) {
-  // A tuning takes its 250 simulated laps of time on any machine; it is ended as Ctrl-C ends it.
+  // A tuning takes its 1000 simulated laps on any machine; it is ended as Ctrl-C ends it.
   const auto result = run_shell("timeout -s INT -k 20 1 '{}' tune-friction --machine mcfv5050ln --out deep/r");
   ASSERT_EQ(result.code, 124) << "it was over before it was interrupted: " << result.error;
   std::size_t files = 0;

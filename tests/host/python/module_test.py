@@ -1,6 +1,6 @@
 """The module of Python against the commands, against the laws in C++, and as its users err.
 
-usage: module_test.py STICTION FOLDER     FOLDER: has the package
+usage: module_test.py STICTION FOLDER EXAMPLES     FOLDER: has the package; EXAMPLES: the folder examples
 """
 
 import json
@@ -13,7 +13,7 @@ import threading
 import unittest
 from pathlib import Path
 
-STICTION, FOLDER = sys.argv[1:3]
+STICTION, FOLDER, EXAMPLES = sys.argv[1:4]
 sys.path.insert(0, FOLDER)
 import numpy as np  # noqa: E402
 
@@ -72,6 +72,59 @@ class Commands(unittest.TestCase):
         found = stiction.tune_friction(CROSS_TABLE, axis="X", feed="16 m/min", no_pulse=True)
         self.assertEqual(found, printed("tune-friction", "--machine", CROSS_TABLE, "--axis", "X", "--feed", "16 m/min",
                                         "--no-pulse"))
+
+    def test_replay_is_the_document_of_the_command(self):
+        found = stiction.replay(self.log, CROSS_TABLE, friction="lugre", signals="double", logs=True)
+        self.assertEqual(found, printed("simulate", "replay", "--from", str(self.log), "--machine", CROSS_TABLE,
+                                        "--friction", "lugre", "--signals", "double"))
+        self.assertEqual([log.run for log in found.logs], ["lugre"])
+        self.assertEqual(len(found.logs[0]["X.x"]), len(self.kept["X.x"]))
+
+    def test_frequency_response_is_the_document_of_the_command(self):
+        found = stiction.frequency_response(CROSS_TABLE, axis="X", passes=1, logs=True)
+        self.assertEqual(found, printed("simulate", "frequency-response", "--machine", CROSS_TABLE, "--axis", "X",
+                                        "--passes", "1"))
+        log = Path(self.folder.name) / "test.csv"
+        found.logs[0].write(log)
+        measured = stiction.frequency_response(CROSS_TABLE, log, loop=["current", "velocity"])
+        self.assertEqual(measured, printed("simulate", "frequency-response", "--machine", CROSS_TABLE, "--from", str(log),
+                                           "--loop", "current,velocity"))
+
+    def test_cam_is_the_document_of_the_command(self):
+        motion = Path(EXAMPLES) / "cams" / "indexing.toml"
+        runs = []
+        found = stiction.simulate("cam", "servo-joint", cam=motion, speed="20 rpm", cycles=1, logs=True,
+                                  progress=runs.append)
+        self.assertEqual(found, printed("simulate", "cam", "--machine", "servo-joint", "--cam", str(motion), "--speed",
+                                        "20 rpm", "--cycles", "1"))
+        self.assertEqual(len(runs), len(found.logs))
+        self.assertIn("master", "".join(found.logs[0]))
+        verified = stiction.simulate("cam", "cam-stand", verification=True)
+        self.assertEqual(verified, printed("simulate", "cam", "--machine", "cam-stand", "--verification"))
+
+    def test_fleet_is_the_document_of_the_command(self):
+        folder = Path(self.folder.name) / "fleet"
+        folder.mkdir()
+        rows = []
+        for axis, coulomb in (("a", 18.0), ("b", 24.0)):
+            for month in (1, 2, 3):
+                key = f"axis.X.friction.coulomb_viscous.coulomb={coulomb + 0.1 * month} N"
+                log = f"{axis}{month}.csv"
+                stiction.simulate("circle", "emps", set=key, logs=True).logs[0].write(folder / log)
+                rows.append(f"{axis},emps,2026-0{month}-01,{log}")
+        listed = folder / "fleet.csv"
+        listed.write_text("axis,machine,date,log\n" + "\n".join(rows) + "\n", encoding="utf-8")
+        steps = []
+        found = stiction.fleet(listed, folder / "out", diagnosis=False, progress=steps.append)
+        self.assertEqual(found, printed("fleet", str(listed), "--out", str(folder / "again"), "--no-diagnosis"))
+        self.assertIn("records: 6 of 6", steps)
+        for name in ("fleet.json", "fleet.csv", "fleet.npz"):
+            self.assertEqual((folder / "out" / name).read_bytes(), (folder / "again" / name).read_bytes(), name)
+        coulomb = found.arrays["parameter"] == "coulomb"
+        values = found.arrays["value"][coulomb]
+        self.assertEqual(list(found.arrays["axis"][coulomb]), ["a"] * 3 + ["b"] * 3)
+        self.assertLess(np.max(np.abs(values / [18.1, 18.2, 18.3, 24.1, 24.2, 24.3] - 1.0)), 0.02)
+        self.assertEqual(stiction.fleet(listed, diagnosis=False), found)  # kept nowhere
 
     def test_signals_are_views_of_the_librarys_memory(self):
         kept = stiction.Log(self.kept._core)
@@ -171,6 +224,20 @@ class Errors(unittest.TestCase):
                 ("axis.X.mass", lambda: stiction.machine(CROSS_TABLE, set="axis.X.mass=-3 kg")),
                 ("nowhere.toml", lambda: stiction.machine("nowhere.toml")),
                 ('did you mean "mcfv5050ln"?', lambda: stiction.machine("mcfv5050l")),
+                ("simulate replay: found 2 logs; expected one", lambda: stiction.replay(["a", "b"], CROSS_TABLE)),
+                ("--cam: found none", lambda: stiction.simulate("cam", "servo-joint", speed="20 rpm")),
+                ("--cycles: found '0'; expected a whole number from 1 to 1000",
+                 lambda: stiction.simulate("cam", "servo-joint", cam="a.toml", speed="20 rpm", cycles=0)),
+                ("--master: found 'slow'; expected one of",
+                 lambda: stiction.simulate("cam", "servo-joint", cam="a.toml", speed="20 rpm", master="slow")),
+                ("--signal: found 'noise'", lambda: stiction.frequency_response(CROSS_TABLE, signal="noise")),
+                ("--passes: found it with a log", lambda: stiction.frequency_response(CROSS_TABLE, "a.csv", passes=1)),
+                ("--columns: found it without a log", lambda: stiction.frequency_response(CROSS_TABLE, columns="t[s]")),
+                ("diagnose: found no log", lambda: stiction.diagnose([], CROSS_TABLE)),
+                ("nowhere.csv", lambda: stiction.fleet("nowhere.csv")),
+                ("false alarms: found 2 an axis in a year; expected 1e-6 to 1",
+                 lambda: stiction.fleet("nowhere.csv", false_alarms=2.0)),
+                ("expected one of them", lambda: stiction.fleet("nowhere.csv", full=True, diagnosis=False)),
                 ("found no log; expected at least one", lambda: stiction.diagnose([], CROSS_TABLE)),
                 ("--seed: found '-1'; expected a whole number", lambda: stiction.diagnose(
                     __file__, CROSS_TABLE, axis="X", seed=-1)),
@@ -224,4 +291,4 @@ class Stubs(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1] + sys.argv[3:])
+    unittest.main(argv=sys.argv[:1] + sys.argv[4:])

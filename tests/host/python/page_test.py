@@ -23,6 +23,8 @@ import numpy as np  # noqa: E402
 
 # What the page says of its own results.
 assert len(blocks) > 6, f"found {len(blocks)} examples"
+assert len(names["replayed"].logs[0]["X.x"]) == len(names["log"]["X.x"]) and names["loops"]["results"]
+assert np.max(np.abs(names["rough"].logs[0]["X.x"] - names["smooth"].logs[0]["X.x"])) > 1e-7
 assert len(names["found"].logs) == 1 and len(names["found"]["rows"]) == 2
 assert names["heavy"].axes["X"]["mass"] == 300.0
 assert names["many"]["e"].shape == (100, 4) and not names["many"]["fault"].any()

@@ -42,6 +42,14 @@ class Studies(unittest.TestCase):
         self.assertEqual(curves, 3)
         self.assertLess(abs(found[0] / source[0] - 1.0), 0.05)  # the mass
 
+    def test_fleet_finds_the_axis_whose_friction_grows(self):
+        table, curves = run("fleet", "--axes", "3", "--months", "6", "--growth", "0.1")
+        alarms = {line[:6]: line for line in table.splitlines() if line.startswith("axis ")}
+        self.assertEqual(curves, 3)
+        self.assertRegex(alarms["axis 2"], r"coulomb up on 2024-0[3456]-01")
+        for quiet in ("axis 1", "axis 3"):
+            self.assertTrue(alarms[quiet].endswith("none"), table)
+
 
 if __name__ == "__main__":
     unittest.main(argv=sys.argv[:1])

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include "host/requests/run_options.hpp"
@@ -74,6 +75,38 @@ TEST(Request, EndsWhereItsProgressThrows) {
                Enough);
   // A run that had begun on each processor ends, and none begins after it.
   EXPECT_LE(told, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+TEST(Request, GivesTheForcesOfItsCallerToThePlants) {
+  Request request{"simulate circle", cross_table};
+  request.options = {{"friction", "lugre"}, {"feed", "48 m/min"}};
+  const auto smooth = answer(request).document["rows"];
+  std::atomic<int> asked = 0;
+  request.forces = {{"Y", [&](const AxisState& state) {
+                       ++asked;
+                       return -200.0 * state.position;
+                     }}};
+  const auto sprung = answer(request).document["rows"];
+  EXPECT_EQ(sprung[0], smooth[0]);
+  EXPECT_NE(sprung[1], smooth[1]);
+  EXPECT_GT(asked, 1000);
+}
+
+TEST(Request, RefusesForcesThatNoPlantCanHave) {
+  Request request{"simulate circle", cross_table};
+  request.options = {{"friction", "lugre"}, {"feed", "48 m/min"}};
+  const auto none = [](const AxisState&) { return 0.0; };
+  request.forces = {{"Z", none}};
+  EXPECT_THAT(refusal(request), HasSubstr("effect: found 'Z'; expected an axis of mcfv5050ln: X, Y"));
+  request.forces = {{"X", [](const AxisState&) { return std::nan(""); }}};
+  EXPECT_THAT(refusal(request), HasSubstr("effect on axis X: found the force nan at 0.000000 s"));
+  request = {"simulate break-away", cross_table};
+  request.options = {{"friction", "lugre"}};
+  request.forces = {{"X", none}};
+  EXPECT_THAT(refusal(request), HasSubstr("which no run has asked for; expected an experiment with that axis"));
+  request = {"tune-friction", cross_table};
+  request.forces = {{"X", none}};
+  EXPECT_THAT(refusal(request), HasSubstr("found effects; expected them of simulations alone"));
 }
 
 TEST(Request, HasTheOptionsOfEveryCommand) {
