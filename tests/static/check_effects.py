@@ -15,9 +15,11 @@ import sys
 BY_CLASS = {
     "sim/plant/acting_effects.hpp": "what acts between motor and carriage, and on what is measured, has its own place "
                                     "in a step of the plant",
-    "host/simulate/replay.cpp": "the current of a record comes late",
+    "host/simulate/replay_sampler.cpp": "the current of a record comes late",
     "host/simulate/late_current.hpp": "the current of a record comes late",
     "host/simulate/late_set_points.hpp": "a slave has the set-points of its master late",
+    "host/tune/lap_errors.cpp": "laps of a late slave have no batch",
+    "host/diagnose/reference/reference_circles.cpp": "axes that act on each other are simulated together",
     "host/diagnose/record/command_replay.cpp": "the same",
     "sim/plant/transmission_error.hpp": "it adds to the errors of the machine file's transmission",
     "host/diagnose/behind_master.cpp": "a late slave is simulated as late before its force is searched",

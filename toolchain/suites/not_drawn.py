@@ -7,7 +7,7 @@ COMMIT: its hexadecimal name. Status 1 for an expression that no test of the lis
 import re
 import sys
 
-GROUPS = 3
+GROUPS = 4
 
 
 def main():
