@@ -6,6 +6,7 @@
 //                                                            with advance(const CarriageState&), one that remembers
 //   static void change_drive(const Parameters&, Axis&)       the drive's parameters; the plant keeps the file's
 //   static void check(const Parameters&)                     whether the values go together
+//   static void check_axis(const Parameters&, const Axis&)   whether an axis can have it
 // What acts at a place of its own (between motor and carriage, on what is measured) the plant looks up by its class,
 // see acting_effects.hpp.
 #pragma once
@@ -55,6 +56,10 @@ EffectLaw law_of() {
   using Parameters = typename E::Parameters;
   EffectLaw law;
   law.check = [](const machine::KeyedValues& values) { parameters_of<E>(values); };
+  if constexpr (requires(const Parameters& p, const machine::AxisModel& axis) { E::check_axis(p, axis); })
+    law.check_axis = [](const machine::KeyedValues& values, const machine::AxisModel& axis) {
+      E::check_axis(parameters_of<E>(values), axis);
+    };
   if constexpr (requires(const Parameters& p, machine::AxisModel& axis) { E::change(p, axis); })
     law.change = [](const machine::KeyedValues& values, machine::AxisModel& plant) {
       E::change(parameters_of<E>(values), plant);

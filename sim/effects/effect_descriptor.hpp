@@ -68,6 +68,8 @@ struct EffectAlias {
 struct EffectLaw {
   // Throws EffectError for values that do not go together.
   void (*check)(const machine::KeyedValues&) = nullptr;
+  // Throws EffectError on an axis, as its file describes it, that cannot have such an effect.
+  void (*check_axis)(const machine::KeyedValues&, const machine::AxisModel& axis) = nullptr;
   // The plant's own parameters; the drive keeps the file's. Throws EffectError.
   void (*change)(const machine::KeyedValues&, machine::AxisModel& plant) = nullptr;
   // The drive's parameters; the plant keeps the file's. Throws EffectError.

@@ -19,12 +19,14 @@ const std::vector<EffectDescriptor>& descriptors() {
   return made;
 }
 
-void check_names(const machine::AxisModel& axis) {
+void check_effects(const machine::AxisModel& axis) {
   std::vector<std::string_view> seen;
   for (const machine::Effect& effect : axis.effects) {
     if (given_force(effect)) continue;
     check_effect(effect);
-    if (!(*find_effect(effect.name))->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
+    const EffectId id = *find_effect(effect.name);
+    if (id->law.check_axis != nullptr) id->law.check_axis(effect.values, axis);
+    if (!id->several && std::find(seen.begin(), seen.end(), effect.name) != seen.end())
       throw EffectError(effect.name, "it twice on one axis", "it once");
     seen.push_back(effect.name);
   }
@@ -88,7 +90,7 @@ std::string unit_suffix(std::string_view unit) {
 
 machine::AxisModel plant_axis(const machine::AxisModel& axis) {
   machine::AxisModel plant = axis;
-  check_names(axis);
+  check_effects(axis);
   for (const EffectId id : all_effects())
     if (id->law.change != nullptr)
       for (const machine::Effect& effect : axis.effects)

@@ -31,11 +31,7 @@ class ActingEffects {
   // `step`: of the plant, s.
   ActingEffects(const machine::AxisModel& axis, double step, double position, double time = 0.0)
       : step_(step), start_(time), follower_(position) {
-    if (axis.elastic())
-      add_shaft(axis, step, position);
-    else if (!effects_of<PeriodicTransmissionError>(axis).empty())
-      throw EffectError(PeriodicTransmissionError::name, "an axis without transmission.stiffness",
-                        "one with an elastic shaft between motor and load");
+    if (axis.elastic()) add_shaft(axis, step, position);
     for (const auto& parameters : effects_of<StructuralResonance>(axis)) add_resonance(parameters, axis, step);
     if (axis.gravity) {
       auto gravity = std::make_unique<Gravity>(axis, step);
@@ -193,9 +189,6 @@ class ActingEffects {
   }
   // A mode of the axis, or of a part of the load that hangs on the rest of it by a spring of its own.
   void add_resonance(const StructuralResonance::Parameters& parameters, const machine::AxisModel& axis, double step) {
-    if (axis.elastic() && parameters.motor_measured == 0)
-      throw EffectError(StructuralResonance::name, "motor_measured = 0 on an axis with transmission.stiffness",
-                        "motor_measured = 1, a part of the load behind the rest of it");
     const StructuralResonance mode(parameters, axis.elastic() ? axis.mass - axis.motor_mass : axis.mass);
     const Shaft spring{mode.measured_mass, mode.other_mass, mode.stiffness, mode.damping};
     if (axis.elastic()) {

@@ -44,7 +44,7 @@ std::string effect_of(FuzzedDataProvider& bytes) {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const std::array bases{text_of(valid_machine("synchronous")), text_of(valid_machine("dc")),
-                                text_of(valid_machine("force"))};
+                                text_of(valid_machine("force")), text_of(valid_machine("elastic"))};
   static FileInMemory file;
   FuzzedDataProvider bytes(data, size);
   const auto& base = bases[bytes.ConsumeIntegralInRange<std::size_t>(0, bases.size() - 1)];

@@ -79,8 +79,8 @@ void FileInMemory::replace_by(std::string_view text) {
     finding("the file in memory cannot be written");
 }
 
-std::filesystem::path valid_machine(const std::string& motor) {
-  return std::filesystem::path(STICTION_SOURCE_DIR) / "tests" / "fuzz" / "seeds" / "machine_file" / (motor + ".toml");
+std::filesystem::path valid_machine(const std::string& name) {
+  return std::filesystem::path(STICTION_SOURCE_DIR) / "tests" / "fuzz" / "seeds" / "machine_file" / (name + ".toml");
 }
 
 void run_briefly(const machine::Machine& machine) {

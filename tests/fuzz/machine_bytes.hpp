@@ -25,8 +25,9 @@ class FileInMemory {
   std::filesystem::path path_;
 };
 
-// Valid machines with one axis that has everything its motor model allows: "synchronous", "dc" or "force".
-std::filesystem::path valid_machine(const std::string& motor);
+// Valid machines with one axis that has everything its motor model allows, "synchronous", "dc" or "force", or a shaft
+// between motor and load, "elastic".
+std::filesystem::path valid_machine(const std::string& name);
 
 // Reads the file and, when it is accepted, runs the machine for a moment. A refusal that names its reason
 // (sim::MachineFileError, sim::ConfigurationError) is right for any input; every other exception, and a machine that

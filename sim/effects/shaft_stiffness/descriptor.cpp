@@ -1,12 +1,12 @@
 #include "sim/effects/describe.hpp"
+#include "sim/effects/require_shaft.hpp"
 #include "sim/effects/shaft_stiffness/shaft_stiffness.hpp"
 
 namespace stiction::sim {
 
+void ShaftStiffness::check_axis(const Parameters&, const machine::AxisModel& axis) { require_shaft(name, axis); }
+
 void ShaftStiffness::change(const Parameters& p, machine::AxisModel& plant) {
-  if (!plant.elastic())
-    throw EffectError(name, "an axis without transmission.stiffness",
-                      "one with an elastic shaft between motor and load");
   plant.transmission->stiffness = p.stiffness;
 }
 

@@ -21,6 +21,7 @@ struct ShaftStiffness {
   }};
 
   // Throws EffectError on an axis without a shaft.
+  static void check_axis(const Parameters& p, const machine::AxisModel& axis);
   static void change(const Parameters& p, machine::AxisModel& plant);
 };
 

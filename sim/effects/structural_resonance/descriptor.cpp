@@ -2,7 +2,15 @@
 #include "sim/effects/shared_sentences.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 
-namespace stiction::sim::effects {
+namespace stiction::sim {
+
+void StructuralResonance::check_axis(const Parameters& p, const machine::AxisModel& axis) {
+  if (axis.elastic() && p.motor_measured == 0)
+    throw EffectError(name, "motor_measured = 0 on an axis with transmission.stiffness",
+                      "motor_measured = 1, a part of the load behind the rest of it");
+}
+
+namespace effects {
 
 EffectDescriptor structural_resonance() {
   return described<StructuralResonance>({
@@ -25,4 +33,5 @@ EffectDescriptor structural_resonance() {
   });
 }
 
-}  // namespace stiction::sim::effects
+}  // namespace effects
+}  // namespace stiction::sim

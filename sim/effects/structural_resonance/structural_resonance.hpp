@@ -9,6 +9,7 @@
 #include <array>
 #include <numbers>
 
+#include "firmware/machine/model/machine.hpp"
 #include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
@@ -41,6 +42,9 @@ class StructuralResonance {
        0.0,
        "1: the motor drives the measured side, and the other one hangs behind it; 0: it drives the other one"},
   }};
+
+  // Throws EffectError for a mode between motor and load of an axis that has a shaft there.
+  static void check_axis(const Parameters& p, const machine::AxisModel& axis);
 
   // `mass` (kg): of both together.
   StructuralResonance(const Parameters& p, double mass)

@@ -1,9 +1,16 @@
 #include <cmath>
 
 #include "sim/effects/describe.hpp"
+#include "sim/effects/require_shaft.hpp"
 #include "sim/effects/transmission_error/transmission_error.hpp"
 
-namespace stiction::sim::effects {
+namespace stiction::sim {
+
+void PeriodicTransmissionError::check_axis(const Parameters&, const machine::AxisModel& axis) {
+  require_shaft(name, axis);
+}
+
+namespace effects {
 
 EffectDescriptor transmission_error() {
   return described<PeriodicTransmissionError>({
@@ -31,4 +38,5 @@ EffectDescriptor transmission_error() {
   });
 }
 
-}  // namespace stiction::sim::effects
+}  // namespace effects
+}  // namespace stiction::sim

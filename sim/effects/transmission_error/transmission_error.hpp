@@ -7,6 +7,7 @@
 
 #include <array>
 
+#include "firmware/machine/model/machine.hpp"
 #include "firmware/machine/model/parameter.hpp"
 
 namespace stiction::sim {
@@ -37,6 +38,9 @@ struct PeriodicTransmissionError {
        "amplitude at the load that is largest at the position 0"},
       {"sine", "m", machine::any_value(), &Parameters::sine, {}, "amplitude a quarter of a wave later"},
   }};
+
+  // Throws EffectError on an axis without a shaft.
+  static void check_axis(const Parameters& p, const machine::AxisModel& axis);
 };
 
 }  // namespace stiction::sim

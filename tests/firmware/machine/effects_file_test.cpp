@@ -109,6 +109,40 @@ TEST(EffectsFile, WhatCannotBeTogetherIsRefused) {
             "Coulomb friction of 20 N; expected a product of 0.9 to 1000 times Coulomb friction");
 }
 
+// What the plant's shaft refuses is refused where the file is read, with the line.
+TEST(EffectsFile, WhatNeedsAShaftOrIsOneIsRefusedWhereTheAxisDoesNotFit) {
+  const std::string expected =
+      "with an axis without transmission.stiffness; expected one with an elastic shaft between motor and load";
+  EXPECT_EQ(error_of_effect("name = \"transmission_error\"\nper = 1\norder = 1\ncosine = \"1 um\"\nsine = \"1 um\"\n"),
+            "FILE:29: axis.B.effect[0]: found transmission_error " + expected);
+  EXPECT_EQ(error_of_effect("name = \"shaft_stiffness\"\nstiffness = \"1e7 N/m\"\n"),
+            "FILE:29: axis.B.effect[0]: found shaft_stiffness " + expected);
+}
+
+// Beside a shaft the mode is a part of the load that hangs on the rest of it.
+TEST(EffectsFile, ASecondModeBesideAShaftIsBehindTheLoad) {
+  const auto stand = shipped_machine().parent_path() / "cam-stand.toml";
+  const auto with_mode = [&](double motor_measured) {
+    const std::vector<AxisEffects> mode{{"L",
+                                         {effect("structural_resonance", {{"frequency", {60.0}},
+                                                                          {"damping_ratio", {0.1}},
+                                                                          {"mass_ratio", {0.5}},
+                                                                          {"motor_measured", {motor_measured}}})}}};
+    return sim::parse_machine("e.toml", sim::extended_machine(stand, {}, mode, {}));
+  };
+  EXPECT_EQ(with_mode(1.0).axes[0].effects.size(), 1u);
+  try {
+    with_mode(0.0);
+    FAIL() << "accepted";
+  } catch (const MachineFileError& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("found structural_resonance with motor_measured = 0 on an axis with "
+                        "transmission.stiffness; expected motor_measured = 1"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST(EffectsFile, TheReferencePageShowsEveryKey) {
   const std::string page = sim::reference_page();
   for (const sim::EffectId kind : sim::all_effects()) {
@@ -248,12 +282,12 @@ TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSour
   EXPECT_EQ(text.find("position_gain"), std::string::npos) << text;
 }
 
-TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffect) {
+TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffectButThoseOfAShaft) {
   for (const sim::EffectId kind : sim::all_effects()) {
     Effect one{kind.name(), {}};
     for (const ValueKey& key : kind->keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
-    if (kind.name() == "shaft_stiffness") {
+    if (kind.name() == "shaft_stiffness" || kind.name() == "transmission_error") {
       // The motors of this table move their axes directly.
       EXPECT_THROW(sim::parse_machine("e.toml", sim::extended_machine(shipped_machine(), {}, every, {})),
                    MachineFileError);
