@@ -26,7 +26,7 @@ std::string file_names(const std::vector<std::string>& paths) {
 // "moving mass, level of Coulomb friction": titles within a sentence.
 std::string listed(std::vector<std::string> titles) {
   for (auto& title : titles)
-    if (title.size() > 1 && std::islower(static_cast<unsigned char>(title[1])))
+    if (title.size() > 1 && (title[1] == ' ' || std::islower(static_cast<unsigned char>(title[1]))))
       title[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(title[0])));
   return escape_html(typeset(fmt::format("{}", fmt::join(titles, ", "))));
 }
