@@ -8,6 +8,7 @@
 
 #include "host/diagnose/record/cycle_mean.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
+#include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/redrawn_residual.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
@@ -75,7 +76,10 @@ class Maker {
       measure(record, prepared_.axis, prepared_.settings);
       if (!prepare(record)) return std::nullopt;
       if (original_.friction == FrictionAlong::simulated_motion)
-        record.target = along_regressors(record, prepared_.axis);
+        record.target +=
+            RecordsBesideRuns(own_motion_ ? record.logs : original_.logs, own_motion_ ? record.rows : original_.rows,
+                              prepared_.axis, prepared_.settings)
+                .friction_off(record.rows, record.regressors);
       for (const auto* own : {&original_.of_exact_records, &original_.of_disturbance})
         if (own->size() > 0) record.target -= own->cwiseProduct(record.regressors.counts());
       ExactRecord made{std::move(record.target), std::nullopt};
@@ -110,7 +114,9 @@ class Maker {
       regress_on(record, motion, prepared_.axis, prepared_.settings);
     } else {
       record.regressors = original_.regressors;
-      record.target = (record.target - own_).cwiseProduct(record.regressors.counts());
+      // As the file's own run was taken: where it holds still and the record moves, nothing is left of it.
+      const Eigen::VectorXd left = own_residual(record.logs, original_.logs, prepared_.axis, prepared_.settings);
+      record.target = (left - own_).cwiseProduct(record.regressors.counts());
     }
     return true;
   }

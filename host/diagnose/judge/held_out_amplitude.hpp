@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <span>
 
+#include "host/diagnose/statistics/level.hpp"
 #include "host/identify/regression.hpp"
 
 namespace stiction::host {
@@ -14,8 +15,8 @@ struct HeldOutAmplitude {
   // Twice the logarithm of how much better the records agree with none of the force than with all of it (Kass, Raftery,
   // J. Am. Stat. Assoc. 90, 1995: beyond 6 strongly); 0 where it does not act.
   double against() const { return deviation > 0.0 ? (1.0 - 2.0 * size) / (deviation * deviation) : 0.0; }
-  // Whether the full size is within two standard errors of what they show.
-  bool may_be_all() const { return 1.0 - size <= 2.0 * deviation; }
+  // Whether they may show the full size: noise takes a true one further down in the level of the design.
+  bool may_be_all() const { return 1.0 - size <= normal_exceeded_at_level * deviation; }
 };
 
 // `force`, `residual`: N, of rows, the second with the force still in it; `logs`: first row of each log; `blocks`:

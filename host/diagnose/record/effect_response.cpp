@@ -6,9 +6,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/identify/identification.hpp"
+#include "host/identify/standstill.hpp"
 #include "host/simulate/replay_together.hpp"
 #include "sim/effects/effects.hpp"
 
@@ -42,7 +44,14 @@ EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis
   machine_ = std::move(setup.machine);
   auto& own = machine_.axes.front();
   own.encoder.noise = 0.0;
-  for (auto& log : setup.logs) records_.push_back({std::move(log), {}, {}, {}});
+  const auto file = sim::plant_axis(own);
+  for (auto& log : setup.logs) {
+    const auto& channels = log.axes.front();
+    RecordMoves moves;
+    if (!channels.x.empty())
+      moves = moves_of_record(log, motion_of(log, channels, own, Amperes::amplitude, settings), file, settings.cutoff);
+    records_.push_back({std::move(log), std::move(moves), {}, {}, {}});
+  }
   if (limit_cycle == QuantizerLimitCycle::simulated) return;
   own.position_controller.increment = fine_increment(own.position_controller.increment);
   without_windings(own);
@@ -71,12 +80,12 @@ std::vector<double> EffectResponse::residual(const Record& record, Log simulated
   simulated.axes.front().external_force = external_force;
   const auto motion =
       motion_of(simulated, simulated.axes.front(), machine_.axes.front(), Amperes::amplitude, settings_);
-  auto force = motion.force;
-  const auto expected = force_along(file, motion);
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] -= expected[i];
+  auto force = left_of_run(motion, file, record.moves, settings_.cutoff);
   if (friction_ == FrictionAlong::own_motion || record.friction.empty()) return force;
   const auto own = friction_along(file, motion);
-  for (std::size_t i = 0; i < force.size(); ++i) force[i] += own[i] - record.friction[i];
+  // Where the record alone moves its target has its friction along its own motion.
+  for (std::size_t i = 0; i < force.size(); ++i)
+    if (record.friction[i]) force[i] += own[i] - *record.friction[i];
   return force;
 }
 
@@ -92,8 +101,14 @@ void EffectResponse::take_silent(Record& record, const Log& replayed) const {
   record.silent = residual(record, replayed, record.log.axes.front().external_force);
   if (friction_ == FrictionAlong::own_motion) return;
   const auto& axis = machine_.axes.front();
-  record.friction = friction_along(sim::plant_axis(axis),
-                                   motion_of(replayed, replayed.axes.front(), axis, Amperes::amplitude, settings_));
+  const auto file = sim::plant_axis(axis);
+  const auto motion = motion_of(replayed, replayed.axes.front(), axis, Amperes::amplitude, settings_);
+  const auto friction = friction_along(file, motion);
+  record.friction.assign(friction.begin(), friction.end());
+  if (record.moves.samples.empty()) return;
+  const auto run_moves = samples_faster_than(record.moves.speed, motion, settings_.cutoff);
+  for (std::size_t i = 0; i < run_moves.size(); ++i)
+    if (record.moves.samples[i] != 0.0 && run_moves[i] == 0.0) record.friction[i].reset();
 }
 
 void EffectResponse::take_silence(std::span<const std::vector<Log>> runs) {

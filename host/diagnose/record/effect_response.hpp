@@ -9,6 +9,7 @@
 
 #include "firmware/machine/model/machine.hpp"
 #include "host/diagnose/record/disturbance.hpp"
+#include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/record.hpp"
 #include "host/diagnose/statistics/coherent_mean.hpp"
 #include "host/identify/motion.hpp"
@@ -62,10 +63,11 @@ class EffectResponse {
  private:
   struct Record {
     Log log;
-    std::vector<double> silent;                // N, the residual without effects and disturbances
-    std::vector<double> friction;              // N, the file's, along that run
-    std::vector<std::vector<double>> without;  // N, without effects, of each run, once it was asked for
-    bool unfollowed = false;                   // whether the machine cannot follow, without effects
+    RecordMoves moves;
+    std::vector<double> silent;                   // N, the residual without effects and disturbances
+    std::vector<std::optional<double>> friction;  // N, the file's, along that run; nothing where the record alone moves
+    std::vector<std::vector<double>> without;     // N, without effects, of each run, once it was asked for
+    bool unfollowed = false;                      // whether the machine cannot follow, without effects
   };
   // A replay of a record, in silence or under one of many draws of the disturbance.
   struct Run {

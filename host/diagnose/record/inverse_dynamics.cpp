@@ -41,7 +41,7 @@ std::vector<double> by_contact(const typename Law::Parameters& parameters, doubl
   const double viscous = Law::viscous(parameters);
   std::vector<double> force(motion.x.size());
   for (std::size_t i = 0; i < force.size(); ++i) {
-    const double moved = i == 0 ? 0.0 : motion.x[i] - motion.x[i - 1];
+    const double moved = i == 0 ? 0.0 : motion.moved.empty() ? motion.x[i] - motion.x[i - 1] : motion.moved[i];
     force[i] = law.move_contact(moved / motion.period) + viscous * motion.v[i];
   }
   return force;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/diagnose/record/followed_set_points.hpp"
+#include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
@@ -114,6 +115,7 @@ std::vector<Log> drive(Record& record, const machine::Machine& machine, std::siz
 void regress_on(Record& record, const std::vector<Log>& motion, const machine::AxisModel& axis,
                 const SignalSettings& settings) {
   record.regressors = record.rows;
+  Eigen::VectorXd moves = moving_rows(record.rows, axis, settings.cutoff);
   if (motion.empty()) {
     record.simulated.clear();
     record.simulated_elsewhere.clear();
@@ -127,14 +129,15 @@ void regress_on(Record& record, const std::vector<Log>& motion, const machine::A
       apart = record.target - mean_own_residual(record.simulated_elsewhere, record.logs, axis, settings);
     if (shared.squaredNorm() < alike * apart.squaredNorm()) record.simulated_elsewhere.clear();
     record.target = record.simulated_elsewhere.empty() ? shared : apart;
-    record.regressors = rows_of(
-        record.moved_elsewhere.empty() ? motion : moved_as(motion, record.moved_elsewhere, axis), axis, settings);
+    const auto runs = rows_of(record.moved_elsewhere.empty() ? motion : moved_as(motion, record.moved_elsewhere, axis),
+                              axis, settings);
+    const RecordsBesideRuns beside(record.logs, record.rows, axis, settings);
+    moves = beside.moving(runs);
+    record.regressors = beside.joined_motion(runs);
     record.regressors.read_as(record.rows);
   }
-  Eigen::VectorXd moves = Eigen::VectorXd::Ones(record.target.size());
   for (const auto* rows : {&record.rows, &record.regressors})
-    moves =
-        moves.cwiseProduct(moving_rows(*rows, axis, settings.cutoff)).cwiseProduct(rows_after_first_slide(*rows, axis));
+    moves.array() *= rows_after_first_slide(*rows, axis).array();
   record.regressors.weigh(motion.empty() ? moves : moves.cwiseProduct(known_friction(record, axis, settings.cutoff)));
   record.target = record.target.cwiseProduct(record.regressors.counts());
 }

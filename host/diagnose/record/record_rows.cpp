@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/suitability.hpp"
@@ -67,7 +68,9 @@ Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector
   for (std::size_t k = 0; k < records.size(); ++k)
     records[k].axes.front().external_force = channels_of(logs[k], axis).external_force;
   const auto rows = rows_of(records, axis, settings);
-  return rows.force - expected_force(rows, axis);
+  if (!runs_hold_still(axis)) return rows.force - expected_force(rows, axis);
+  const auto measured = rows_of(logs, axis, settings);
+  return RecordsBesideRuns(logs, measured, axis, settings).left_of(rows);
 }
 
 Eigen::VectorXd mean_own_residual(const std::vector<std::vector<Log>>& runs, const std::vector<Log>& logs,

@@ -27,7 +27,8 @@ LogRows rows_of(const std::vector<Log>& logs, const machine::AxisModel& axis, co
 // N, what the file says of `axis` along the motion of `rows`.
 Eigen::VectorXd expected_force(const LogRows& rows, const machine::AxisModel& axis);
 
-// What a file makes of its own noise-free record: 0 but for what the inverse dynamics cannot know. N, of the rows.
+// What a file makes of its own noise-free record: 0 but for what the inverse dynamics cannot know, and where the run
+// holds still and the record moves (held_still.hpp). N, of the rows.
 // `replayed`: the simulation's records; `logs`: those that it repeats; `axis`: of the file; `settings` of the rows.
 Eigen::VectorXd own_residual(const std::vector<Log>& replayed, const std::vector<Log>& logs,
                              const machine::AxisModel& axis, const SignalSettings& settings);

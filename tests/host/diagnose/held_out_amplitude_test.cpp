@@ -68,7 +68,7 @@ TEST(HeldOutAmplitude, speaks_against_what_is_not_there_and_for_what_is) {
   EXPECT_LT(std::abs(repetition_of(0.005 * force, left, logs, blocks_of(50)).against()), 1.0);
 }
 
-TEST(HeldOutAmplitude, may_be_all_within_two_standard_errors) {
+TEST(HeldOutAmplitude, may_be_all_but_in_one_percent_of_records) {
   EXPECT_TRUE((HeldOutAmplitude{0.4, 0.35}.may_be_all()));
   EXPECT_FALSE((HeldOutAmplitude{0.4, 0.25}.may_be_all()));
   EXPECT_TRUE((HeldOutAmplitude{1.5, 0.01}.may_be_all()));
