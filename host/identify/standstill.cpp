@@ -39,11 +39,6 @@ Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis,
   return moves;
 }
 
-std::vector<double> moving_samples(const Motion& motion, const machine::AxisModel& axis, double cutoff) {
-  if (!sticks_rigidly(axis)) return std::vector<double>(motion.v.size(), 1.0);
-  return samples_faster_than(stopped_from(axis, cutoff), motion, cutoff);
-}
-
 std::vector<double> samples_faster_than(double speed, const Motion& motion, double cutoff) {
   std::vector<double> faster(motion.v.size(), 1.0);
   const auto beside = static_cast<std::size_t>(std::ceil(reach / cutoff / motion.period));

@@ -17,13 +17,11 @@ bool sticks_rigidly(const machine::AxisModel& axis);
 // the mass within what the position's filter (`cutoff`, Hz) resolves, an axis cannot be told from one that stands; as
 // far as that filter reaches, the rows on each side have a share in it.
 Eigen::VectorXd moving_rows(const LogRows& rows, const machine::AxisModel& axis, double cutoff);
-// The same of the samples of one `motion`.
-std::vector<double> moving_samples(const Motion& motion, const machine::AxisModel& axis, double cutoff);
 // m, that an `axis` gets no further than within the filter's reach when it cannot be told from one that stands;
 // `cutoff` as above.
 double unresolved_distance(const machine::AxisModel& axis, double cutoff);
-// 1 for each sample of the `motion` that is faster than `speed` (m/s) as far as the filter reaches to each side, else
-// 0.
+// 1 for each sample of the `motion` that is faster than `speed` (m/s) as far as the filter (`cutoff`, Hz) reaches to
+// each side, else 0.
 std::vector<double> samples_faster_than(double speed, const Motion& motion, double cutoff);
 
 // 1 for each of `rows` in which a contact of `axis` has forgotten how it was left before the record: behind the first

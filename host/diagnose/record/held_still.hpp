@@ -28,7 +28,8 @@ RecordMoves moves_of_record(const Log& log, const Motion& motion, const machine:
 // 1 for each sample in which the `record` moves and the `run` of it holds still, else 0. `cutoff`: as above.
 std::vector<double> of_record_alone(const RecordMoves& record, const Motion& run, double cutoff);
 
-// N, what the file of the `axis` leaves of a `run` at each sample: nothing where the `record` alone moves.
+// N, what the file of the `axis` leaves of a `run` at each sample: nothing where the `record` alone moves. `cutoff`: as
+// above.
 std::vector<double> left_of_run(const Motion& run, const machine::AxisModel& axis, const RecordMoves& record,
                                 double cutoff);
 
