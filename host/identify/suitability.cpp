@@ -8,28 +8,26 @@
 
 #include "firmware/machine/model/motor_force.hpp"
 #include "host/identify/fit_support.hpp"
+#include "host/log/resolution.hpp"
 
 namespace stiction::host {
 namespace {
 
 constexpr double shortest = 2.0;  // s, of all logs: 20 blocks of the shortest length
 
-// Where the magnitude `top` is held for at least `least` samples in a row: sample and length of the longest such run.
 struct Run {
   std::size_t begin = 0, length = 0;
 };
-template <class AtTop>
-Run longest_run(const std::vector<double>& values, AtTop&& at_top) {
-  Run longest, now;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    if (!at_top(k)) {
-      now.length = 0;
-      continue;
-    }
-    if (now.length++ == 0) now.begin = k;
-    if (now.length > longest.length) longest = now;
+// Of samples in a row at which a condition holds, `least` and more.
+template <class Holds>
+std::vector<Run> runs_where(std::size_t samples, std::size_t least, Holds&& holds) {
+  std::vector<Run> runs;
+  for (std::size_t k = 0; k < samples; ++k) {
+    const std::size_t begin = k;
+    while (k < samples && holds(k)) ++k;
+    if (k - begin >= least) runs.push_back({begin, k - begin});
   }
-  return longest;
+  return runs;
 }
 
 struct Signal {
@@ -78,6 +76,40 @@ std::vector<double> speeds_of(const LogRows& rows, double highest) {
   return speeds;
 }
 
+// Whether a flat top is a smooth one, rounded: a parabola of which the top hides no more than two increments keeps the
+// next increment for sqrt(3/2) - 1 of the top's time, on both sides together; a limited signal has left it by then.
+bool rounded(const std::vector<double>& values, const Run& top, double increment) {
+  constexpr double of_parabola = 0.225;
+  constexpr std::size_t odd_samples = 2;  // one at each side
+  const double next = std::abs(values[top.begin]) - 1.5 * increment;
+  std::size_t begin = top.begin, end = top.begin + top.length;
+  while (begin > 0 && std::abs(values[begin - 1]) >= next) --begin;
+  while (end < values.size() && std::abs(values[end]) >= next) ++end;
+  return static_cast<double>(end - begin - top.length + odd_samples) >= of_parabola * static_cast<double>(top.length);
+}
+
+// Where the machine's limit is reached.
+std::vector<Run> at_limit(const Signal& signal) {
+  const auto& values = *signal.values;
+  return runs_where(values.size(), 3, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
+}
+
+// Flat tops: the largest value, to the digit, many times in a row, in a signal that otherwise changes.
+std::vector<Run> flat_tops(const std::vector<double>& values) {
+  double largest = 0.0;
+  std::size_t repeats = 0;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    largest = std::max(largest, std::abs(values[k]));
+    repeats += k > 0 && values[k] == values[k - 1];
+  }
+  if (2 * repeats >= values.size()) return {};
+  auto tops = runs_where(values.size(), 10, [&](std::size_t k) { return std::abs(values[k]) == largest; });
+  if (tops.empty()) return tops;
+  const double increment = increment_of(values);
+  std::erase_if(tops, [&](const Run& top) { return rounded(values, top, increment); });
+  return tops;
+}
+
 }  // namespace
 
 std::string sources_of(const std::vector<Motion>& motions) {
@@ -98,48 +130,25 @@ void require_samples(const Log& log) {
 void refuse_saturation(const Log& log, const AxisLog& channels, const machine::AxisModel& axis) {
   const auto signal = driving_signal(channels, axis);
   const auto& values = *signal.values;
-  if (values.empty()) return;
-  double largest = 0.0;
-  for (const double value : values) largest = std::max(largest, std::abs(value));
-  const auto complain = [&](const Run& run, const std::string& why) {
+  const auto refuse = [&](const std::vector<Run>& runs, const std::string& why) {
+    if (runs.empty()) return;
+    const auto run = std::ranges::max(runs, {}, &Run::length);
     throw LogError(
         fmt::format("{}: found the {} at {:.4g} {} for {:.3g} ms at t = {:.4g} s, {}; expected a {} that is never "
                     "limited, because the log then lacks the force that the motion requires. Record the same motion "
                     "with lower acceleration or speed, or a wider measuring range",
-                    log.source, signal.name, largest, signal.unit, 1e3 * static_cast<double>(run.length) * log.period,
-                    log.t[run.begin], why, signal.name));
+                    log.source, signal.name, std::abs(values[run.begin]), signal.unit,
+                    1e3 * static_cast<double>(run.length) * log.period, log.t[run.begin], why, signal.name));
   };
-  const auto limited = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
-  if (limited.length >= 3)
-    complain(limited, fmt::format("the limit of {:.4g} {} in the machine file", signal.limit, signal.unit));
-  // A flat top: the largest value, to the digit, many times in a row, in a signal that otherwise changes.
-  const auto flat = longest_run(values, [&](std::size_t k) { return std::abs(values[k]) == largest; });
-  std::size_t repeats = 0;
-  for (std::size_t k = 1; k < values.size(); ++k) repeats += values[k] == values[k - 1];
-  if (flat.length >= 10 && 2 * repeats < values.size()) complain(flat, "the same to the last digit");
+  refuse(at_limit(signal), fmt::format("the limit of {:.4g} {} in the machine file", signal.limit, signal.unit));
+  refuse(flat_tops(values), "the same to the last digit");
 }
 
 std::vector<bool> saturated(const AxisLog& channels, const machine::AxisModel& axis) {
   const auto signal = driving_signal(channels, axis);
-  const auto& values = *signal.values;
   std::vector<bool> marked(channels.x.size(), false);
-  double largest = 0.0;
-  std::size_t repeats = 0;
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    largest = std::max(largest, std::abs(values[k]));
-    repeats += k > 0 && values[k] == values[k - 1];
-  }
-  const auto mark = [&](std::size_t least, auto&& at_top) {
-    for (std::size_t k = 0; k < values.size();) {
-      std::size_t end = k;
-      while (end < values.size() && at_top(end)) ++end;
-      if (end - k >= least)
-        std::fill(marked.begin() + static_cast<long>(k), marked.begin() + static_cast<long>(end), true);
-      k = std::max(end, k + 1);
-    }
-  };
-  mark(3, [&](std::size_t k) { return std::abs(values[k]) >= 0.999 * signal.limit; });
-  if (2 * repeats < values.size()) mark(10, [&](std::size_t k) { return std::abs(values[k]) == largest; });
+  for (const auto& runs : {at_limit(signal), flat_tops(*signal.values)})
+    for (const auto& run : runs) std::fill_n(marked.begin() + static_cast<std::ptrdiff_t>(run.begin), run.length, true);
   return marked;
 }
 
