@@ -49,8 +49,8 @@ struct Motion {
   // m, at each sample as the encoder had it: not filtered, and of the record where `x` is a simulation's; empty: as
   // `x`.
   std::vector<double> read{};
-  // m, from the sample before to each one, where it is not the difference of `x`: two motions that are one from place to
-  // place meet in their displacements, not in their positions. Empty: of `x`.
+  // m, from the sample before to each one, where it is not the difference of `x`: two motions that are one from place
+  // to place meet in their displacements, not in their positions. Empty: of `x`.
   std::vector<double> moved{};
   std::string speed_objection{};  // what spoke against a recorded speed that would be quieter; empty: nothing
 };
