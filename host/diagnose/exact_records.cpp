@@ -26,6 +26,7 @@ class Maker {
         original_(original),
         machine_(input.machine),
         axis_(input.axis),
+        beside_(original.logs, original.rows, prepared.axis, prepared.settings),
         disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), original.regressors, rows().time,
                      rows().period(0)),
         driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
@@ -77,8 +78,7 @@ class Maker {
       if (!prepare(record)) return std::nullopt;
       if (original_.friction == FrictionAlong::simulated_motion)
         record.target +=
-            RecordsBesideRuns(own_motion_ ? record.logs : original_.logs, own_motion_ ? record.rows : original_.rows,
-                              prepared_.axis, prepared_.settings)
+            (own_motion_ ? RecordsBesideRuns(record.logs, record.rows, prepared_.axis, prepared_.settings) : beside_)
                 .friction_off(record.rows, record.regressors);
       for (const auto* own : {&original_.of_exact_records, &original_.of_disturbance})
         if (own->size() > 0) record.target -= own->cwiseProduct(record.regressors.counts());
@@ -115,8 +115,7 @@ class Maker {
     } else {
       record.regressors = original_.regressors;
       // As the file's own run was taken: where it holds still and the record moves, nothing is left of it.
-      const Eigen::VectorXd left = own_residual(record.logs, original_.logs, prepared_.axis, prepared_.settings);
-      record.target = (left - own_).cwiseProduct(record.regressors.counts());
+      record.target = (beside_.left_of(record.rows) - own_).cwiseProduct(record.regressors.counts());
     }
     return true;
   }
@@ -125,6 +124,7 @@ class Maker {
   const Record& original_;
   machine::Machine machine_;  // of the file
   std::size_t axis_;
+  RecordsBesideRuns beside_;  // the original's
   RedrawnResidual disturbance_;
   std::vector<Log> driven_;  // with set-points
   bool own_motion_;          // whether each draw has regressors of its own

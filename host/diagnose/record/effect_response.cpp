@@ -10,7 +10,6 @@
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/identify/identification.hpp"
-#include "host/identify/standstill.hpp"
 #include "host/simulate/replay_together.hpp"
 #include "sim/effects/effects.hpp"
 
@@ -48,7 +47,7 @@ EffectResponse::EffectResponse(const machine::Machine& machine, std::size_t axis
   for (auto& log : setup.logs) {
     const auto& channels = log.axes.front();
     RecordMoves moves;
-    if (!channels.x.empty())
+    if (runs_hold_still(file) && !channels.x.empty())
       moves = moves_of_record(log, motion_of(log, channels, own, Amperes::amplitude, settings), file, settings.cutoff);
     records_.push_back({std::move(log), std::move(moves), {}, {}, {}});
   }
@@ -105,10 +104,9 @@ void EffectResponse::take_silent(Record& record, const Log& replayed) const {
   const auto motion = motion_of(replayed, replayed.axes.front(), axis, Amperes::amplitude, settings_);
   const auto friction = friction_along(file, motion);
   record.friction.assign(friction.begin(), friction.end());
-  if (record.moves.samples.empty()) return;
-  const auto run_moves = samples_faster_than(record.moves.speed, motion, settings_.cutoff);
-  for (std::size_t i = 0; i < run_moves.size(); ++i)
-    if (record.moves.samples[i] != 0.0 && run_moves[i] == 0.0) record.friction[i].reset();
+  const auto alone = of_record_alone(record.moves, motion, settings_.cutoff);
+  for (std::size_t i = 0; i < alone.size(); ++i)
+    if (alone[i] != 0.0) record.friction[i].reset();
 }
 
 void EffectResponse::take_silence(std::span<const std::vector<Log>> runs) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/diagnose/record/inverse_dynamics.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/standstill.hpp"
 
@@ -75,6 +76,7 @@ std::vector<double> RecordsBesideRuns::alone(const LogRows& runs, const Motion& 
 }
 
 Eigen::VectorXd RecordsBesideRuns::left_of(const LogRows& runs) const {
+  if (!runs_hold_still(axis_)) return runs.force - expected_force(runs, axis_);
   return runs.stacked([&](const Motion& run) {
     return left_of_run(run, axis_, moves_[static_cast<std::size_t>(&run - runs.motions().data())], settings_.cutoff);
   });
