@@ -55,7 +55,8 @@ Calibration::Calibration(const SearchContext& context, const Eigen::VectorXd& no
 }
 
 std::vector<Calibration::Price> Calibration::prices(
-    const std::function<std::vector<double>(const ExactRecord&)>& odds_in, const std::vector<double>& own) {
+    const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
+    const std::vector<std::optional<double>>& own) {
   std::vector<std::vector<double>> odds(own.size());
   const auto look_at = [&](const ExactRecord& record) {
     const auto of_record = odds_in(record);
@@ -73,7 +74,7 @@ std::vector<Calibration::Price> Calibration::prices(
       const auto limit = exceeded_with(chance, odds[k]);
       prices[k].limit = std::max(limit.odds - sure, 0.0);
       prices[k].typical = std::clamp(limit.median, 0.0, prices[k].limit);
-      all = all && (own[k] < sure || std::abs(own[k] - limit.odds) > margin * limit.error);
+      all = all && (!own[k] || *own[k] < sure || std::abs(*own[k] - limit.odds) > margin * limit.error);
     }
     return all;
   };

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <functional>
+#include <optional>
 #include <vector>
 
 #include "host/diagnose/classes/candidate.hpp"
@@ -22,10 +23,10 @@ class Calibration {
   struct Price {
     double typical = 0.0, limit = 0.0;
   };
-  // Of each name of which `odds_in` tells the log odds in a record; `own`: in the record itself. More records are drawn
-  // where these do not tell on which side of its limit a name is.
+  // Of each name of which `odds_in` tells the log odds in a record; `own`: in the record itself, of those whose side of
+  // their limit has to be known: more records are drawn until it is.
   std::vector<Price> prices(const std::function<std::vector<double>(const ExactRecord&)>& odds_in,
-                            const std::vector<double>& own);
+                            const std::vector<std::optional<double>>& own);
 
  private:
   ExactRecords drawn_;

@@ -295,8 +295,19 @@ std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::v
   return odds;
 }
 
-void Dictionary::price_again() {
-  for (const auto& option : options_) option->log_prior = log_prior_of(scene_, option->candidate, option->shape);
+// Columns of replays may lie behind those that are dropped: each option that stays is given its columns once more.
+void Dictionary::begin_again() {
+  static_cast<Scans&>(scene_) = {};
+  options_.resize(on_grid_);
+  std::vector<std::vector<Eigen::VectorXd>> columns(on_grid_);
+  for (std::size_t k = 0; k < on_grid_; ++k)
+    for (const auto column : options_[k]->group.columns) columns[k].push_back(evidence_.column(column));
+  for (auto* evidence : {&evidence_, &plain_}) evidence->truncate(0);
+  for (std::size_t k = 0; k < on_grid_; ++k) {
+    options_[k]->log_prior = log_prior_of(scene_, options_[k]->candidate, options_[k]->shape);
+    options_[k]->group = add_group(evidence_, columns[k]);
+    plain_.add(columns[k]);
+  }
 }
 
 std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, double shape, const ActiveSet& beside,

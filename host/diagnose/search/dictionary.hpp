@@ -63,8 +63,9 @@ class Dictionary {
   // leaves in the others; options and replays are those of all logs.
   void leave_out(const ActiveSet& set, std::size_t part, std::size_t parts);
   void take_all();
-  // Each option's price anew, as the context has them now.
-  void price_again();
+  // Drops what was found and refined since the start, so that a further search is offered what the first one was, with
+  // each option's price as the context has it now.
+  void begin_again();
   // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.
   Option refined(Option option, const ActiveSet& beside, const Posterior& of_beside);
 

@@ -309,7 +309,11 @@ SearchResult Search::run_calibrated() {
     scene_.prices.resize(candidates().size(), 0.0);
     scene_.hurdles.resize(candidates().size(), 0.0);
     bool changed = false;
-    const auto prices = calibration->prices(odds_in, own);
+    // On which side of its limit what has no name is decides no name.
+    std::vector<std::optional<double>> to_tell(own.begin(), own.end());
+    for (std::size_t k = 0; k < names.size(); ++k)
+      if (candidates()[names[k]].outside()) to_tell[k].reset();
+    const auto prices = calibration->prices(odds_in, to_tell);
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto [typical, limit] = prices[k];
       const bool beyond = own[k] - limit > sure;
@@ -318,7 +322,7 @@ SearchResult Search::run_calibrated() {
       changed = changed || scene_.prices[names[k]] > 0.0 || scene_.hurdles[names[k]] > 0.0;
     }
     if (!changed) break;
-    price_again();
+    begin_again();
     result = run();
   }
   if (calibration) result.exact_records = calibration->records();

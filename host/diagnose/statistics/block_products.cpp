@@ -1,6 +1,7 @@
 #include "host/diagnose/statistics/block_products.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace stiction::host {
 
@@ -10,11 +11,17 @@ void BlockProducts::add(Eigen::VectorXd column) {
 }
 
 void BlockProducts::truncate(std::size_t first) {
+  if (first == 0) {
+    totals_.clear();
+    of_blocks_.clear();
+    free_.clear();
+  } else {
+    for (std::size_t column = first; column < places_.size(); ++column)
+      std::copy_if(places_[column].begin(), places_[column].end(), std::back_inserter(free_),
+                   [](std::size_t place) { return place != unknown; });
+  }
   columns_.resize(first);
   places_.resize(first);
-  if (first > 0) return;
-  totals_.clear();
-  of_blocks_.clear();
 }
 
 void BlockProducts::replace(std::size_t index, Eigen::VectorXd column) {
@@ -27,9 +34,14 @@ void BlockProducts::replace(std::size_t index, Eigen::VectorXd column) {
 std::size_t BlockProducts::known(std::size_t one, std::size_t other) const {
   auto& place = places_[std::max(one, other)][std::min(one, other)];
   if (place != unknown) return place;
-  place = totals_.size();
-  totals_.push_back(0.0);
-  of_blocks_.resize(of_blocks_.size() + blocks_.size());
+  if (free_.empty()) {
+    place = totals_.size();
+    totals_.push_back(0.0);
+    of_blocks_.resize(of_blocks_.size() + blocks_.size());
+  } else {
+    place = free_.back();
+    free_.pop_back();
+  }
   multiply(one, other, place);
   return place;
 }

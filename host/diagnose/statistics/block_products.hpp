@@ -39,6 +39,7 @@ class BlockProducts {
   std::vector<Eigen::VectorXd> columns_;
   // What has been asked for; of one thread at a time.
   mutable std::vector<std::vector<std::size_t>> places_;  // of each column with those up to itself
+  mutable std::vector<std::size_t> free_;                 // places of pairs with a column that was dropped
   mutable std::vector<double> totals_, of_blocks_;
 };
 
