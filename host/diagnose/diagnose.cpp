@@ -6,6 +6,8 @@
 #include <cmath>
 #include <functional>
 #include <iterator>
+#include <optional>
+#include <utility>
 
 #include "host/diagnose/behind_master.hpp"
 #include "host/diagnose/between_encoders.hpp"
@@ -216,21 +218,19 @@ void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained
                    verdict.closed_loop_withheld, verdict.units);
 }
 
-}  // namespace
-
-Verdict diagnose(const DiagnoseInput& input) {
+Verdict diagnose_in(RowBand band, const DiagnoseInput& input) {
   const auto begin = [&](std::size_t part) {
     if (input.progress) input.progress(diagnosis_parts[part]);
   };
   Verdict verdict;
   begin(0);
-  const auto of_file = prepare(input, verdict);
+  const auto of_file = prepare(input, band, verdict);
   // Said once.
   Verdict again;
   const auto behind = behind_master(input, *of_file);
-  const auto late = behind ? prepare(*behind, again) : nullptr;
+  const auto late = behind ? prepare(*behind, band, again) : nullptr;
   const auto between = between_encoders(behind ? *behind : input, late ? *late : *of_file);
-  const auto twisted = between.input ? prepare(*between.input, again) : nullptr;
+  const auto twisted = between.input ? prepare(*between.input, band, again) : nullptr;
   Prepared& records = twisted ? *twisted : late ? *late : *of_file;
   const auto &training = records.training, &held_out = records.held_out;
   begin(1);
@@ -261,6 +261,37 @@ Verdict diagnose(const DiagnoseInput& input) {
   }
   judge_agreement(verdict, records, explained, input.seed, disturbed_position);
   return verdict;
+}
+
+bool names_cause(const Verdict& verdict) {
+  return std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                     [](const Finding& finding) { return finding.names_cause(); });
+}
+
+// Where faster forces give a name, what was found in those.
+std::optional<Verdict> diagnose_faster(const DiagnoseInput& input) {
+  auto logs = input.logs;
+  logs.insert(logs.end(), input.held_out.begin(), input.held_out.end());
+  const double usual = end_of_band(signals_in(RowBand::usual, logs)), wide = end_of_band(signals_in(RowBand::wide, logs));
+  if (!(wide > usual)) return {};
+  auto silent = input;
+  silent.progress = nullptr;
+  if (input.progress) input.progress(diagnosis_parts.back());
+  auto verdict = diagnose_in(RowBand::wide, silent);
+  if (!names_cause(verdict)) return {};
+  verdict.notes.push_back(
+      fmt::format("In forces up to {:.0f} Hz no cause was found, and they do not agree with the file. These are the "
+                  "causes found in forces up to {:.0f} Hz.",
+                  usual, wide));
+  return verdict;
+}
+
+}  // namespace
+
+Verdict diagnose(const DiagnoseInput& input) {
+  auto verdict = diagnose_in(RowBand::usual, input);
+  if (!verdict.agreement || verdict.agreement->status != Status::does_not_agree || names_cause(verdict)) return verdict;
+  return diagnose_faster(input).value_or(std::move(verdict));
 }
 
 }  // namespace stiction::host

@@ -217,7 +217,7 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
 
 }  // namespace
 
-std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) {
+std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, RowBand band, Verdict& verdict) {
   auto prepared = std::make_unique<Prepared>();
   prepared->axis = sim::plant_axis(input.machine.axes.at(input.axis));
   auto& motor = prepared->axis.motor;
@@ -226,7 +226,7 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict) 
   verdict.units = ShownUnits(prepared->axis.coordinate);
   verdict.machine = input.machine.id + ".toml";
   take_logs(*prepared, input, verdict);
-  prepared->settings = wide_band(joined(prepared->training.logs, prepared->held_out.logs));
+  prepared->settings = signals_in(band, joined(prepared->training.logs, prepared->held_out.logs));
   take_rows(*prepared, verdict);
   prepared->context = context_of(prepared->axis, prepared->training.rows, prepared->settings);
   prepared->context.timing = input.machine.timing;

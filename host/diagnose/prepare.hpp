@@ -9,6 +9,7 @@
 #include "host/diagnose/record/diagnose_input.hpp"
 #include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/record.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
 
 namespace stiction::host {
@@ -27,8 +28,8 @@ struct Prepared {
   Prepared& operator=(const Prepared&) = delete;
 };
 
-// Notes and questions go to the `verdict`. Throws LogError for logs of the `input` that cannot be used
-// (record_checks.hpp, suitability.hpp).
-std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, Verdict& verdict);
+// In rows of the `band`. Notes and questions go to the `verdict`. Throws LogError for logs of the `input` that cannot be
+// used (record_checks.hpp, suitability.hpp).
+std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, RowBand band, Verdict& verdict);
 
 }  // namespace stiction::host

@@ -15,11 +15,6 @@ constexpr int anti_alias_order = 8;
 constexpr double anti_alias_ripple = 0.05;  // dB
 constexpr double anti_alias_edge = 0.8;     // of half the new rate
 constexpr double rows_per_band = 2.5;       // rate of the rows over the band that they hold
-// The position's filter acts on the position alone and its edge is at most a fifth of the log's rate. Rows that end at
-// half of that have lost 0.4 % to it, and 0.04 % to the differences. Rows that reach further compare a filtered motion
-// with a force that still has everything: then the jumps of friction at reversals have no motion to belong to.
-constexpr double highest_position_edge = 0.2;               // of the log's rate
-constexpr double highest_row_edge = highest_position_edge;  // of half the log's rate: half as high
 
 // A filter's default padding is right for the rates of the recipe: the position's at 1 kHz, the anti-aliasing one's at
 // a ratio of 10. In time it stays the same.
@@ -83,7 +78,7 @@ Motion motion_of(const Log& log, const AxisLog& channels, const machine::AxisMod
   motion.force = force_of(log, channels, axis, amperes);
   motion.force_is_current = channels.force.empty() && channels.external_force.empty();
   if (log.t.size() < 20) return motion;
-  const double cutoff = std::min(settings.cutoff, highest_position_edge / log.period);
+  const double cutoff = std::min(settings.cutoff, settings.highest / log.period);
   const auto lowpass = butterworth(position_order, 2.0 * cutoff * log.period);
   motion.x = filter_both_ways(lowpass, channels.x, scaled_padding(lowpass, 1e-3 / log.period));
   motion.read = channels.x;
@@ -108,7 +103,7 @@ RowFilter::RowFilter(const Motion& motion, const SignalSettings& settings)
   end_ = end_ > begin_ + skipped_end ? end_ - skipped_end : begin_;
   rows_ = (end_ - begin_ + ratio_ - 1) / ratio_;
   const double edge = settings.band > 0.0 ? 2.0 * settings.band * motion.period
-                                          : std::min(anti_alias_edge / static_cast<double>(ratio_), highest_row_edge);
+                                          : std::min(anti_alias_edge / static_cast<double>(ratio_), settings.highest);
   lowpass_ = chebyshev(anti_alias_order, anti_alias_ripple, edge);
   // Of even order it stands at the ripple's lower end at standstill; a force keeps its size in its rows.
   const double at_standstill = std::pow(10.0, anti_alias_ripple / 20.0);

@@ -14,8 +14,8 @@
 namespace stiction::host {
 
 struct SignalSettings {
-  double cutoff = 100.0;    // Hz, of the position's Butterworth filter of order 4; at most a fifth of the log's rate
-  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it, and to a tenth of the log's rate
+  double cutoff = 100.0;    // Hz, of the position's Butterworth filter of order 4; at most `highest` of the log's rate
+  double row_rate = 100.0;  // Hz; the rows hold frequencies up to 0.4 of it, and to half of `highest` of the log's rate
   int difference_points = 7;
   double skip_start = 0.05;  // s, dropped at the log's start: the filter's transient
   double skip_end = 0.05;    // s
@@ -23,6 +23,10 @@ struct SignalSettings {
   // the position is filtered only where the log is five times as fast as `cutoff`, and its derivatives are those of 11
   // points, so that rows may reach to 0.3 of the log's rate.
   double band = 0.0;
+  // The position's filter acts on the position alone. Rows that end at half of its edge have lost 0.4 % to it, and, at a
+  // tenth of the log's rate, 0.04 % to the differences. Rows that reach further compare a filtered motion with a force
+  // that still has everything: then the jumps of friction at reversals have no motion to belong to.
+  double highest = 0.2;
 };
 
 // The recipe of the published EMPS model (data: Janot, Gautier, Brunot 2019): differences of 3 points, the first 49 ms

@@ -9,20 +9,38 @@
 #include "host/identify/suitability.hpp"
 
 namespace stiction::host {
+namespace {
 
-SignalSettings wide_band(std::span<const Log> logs) {
-  double rate = 0.0;  // Hz, of the slowest log
-  for (const auto& log : logs) rate = rate == 0.0 ? 1.0 / log.period : std::min(rate, 1.0 / log.period);
+constexpr double row_band = 0.4;  // of the rows' rate
+// Of the wide band: what a diagnosis has the memory for.
+constexpr double highest_row_rate = 1000.0;  // Hz
+constexpr double most_rows = 30e3;
+
+}  // namespace
+
+SignalSettings signals_in(RowBand band, std::span<const Log> logs) {
+  double rate = 0.0, seconds = 0.0;  // Hz, of the slowest log; of all
+  for (const auto& log : logs) {
+    rate = rate == 0.0 ? 1.0 / log.period : std::min(rate, 1.0 / log.period);
+    seconds += static_cast<double>(log.t.size()) * log.period;
+  }
   SignalSettings s;
-  s.row_rate = 250.0;  // 0 to 100 Hz, in which the share of an effect is counted
+  s.row_rate = 250.0;  // 0 to 100 Hz
   s.cutoff = 250.0;    // of the position alone, so well above: what it took off m a at 100 Hz the force still has
   if (rate == 0.0) return s;
+  if (band == RowBand::wide) {
+    // A run of the file is taken off the record through the same filters, so that what these take off both is no force.
+    s.highest = 0.4;
+    s.row_rate = s.cutoff = std::max(s.row_rate, std::min(highest_row_rate, most_rows / seconds));
+  }
   // A slower log's rows hold frequencies up to a tenth of its rate. Rows that come faster than that needs say little of
   // their own, and what they say above the filter's edge is rounding, which whitening would take for evidence.
-  s.row_rate = std::min(s.row_rate, 0.25 * rate);
-  s.cutoff = std::min(s.cutoff, 0.2 * rate);
+  s.row_rate = std::min(s.row_rate, 1.25 * s.highest * rate);
+  s.cutoff = std::min(s.cutoff, s.highest * rate);
   return s;
 }
+
+double end_of_band(const SignalSettings& settings) { return row_band * settings.row_rate; }
 
 Log part_of(const Log& log, std::size_t begin, std::size_t end) {
   const auto cut = [&](const std::vector<double>& values) {

@@ -11,9 +11,16 @@
 
 namespace stiction::host {
 
-// The band of a diagnosis: 0 to 100 Hz, in which the share of an effect is counted, and no further than a tenth of the
-// rate of the slowest of `logs`.
-SignalSettings wide_band(std::span<const Log> logs);
+// The forces that a diagnosis looks at: those below 100 Hz, in which the share of an effect is counted; and of records in
+// which these leave something without a name the faster ones too.
+enum class RowBand { usual, wide };
+
+// Rows that hold the forces of the `band`: of the usual one no further than to a tenth of the rate of the slowest of
+// `logs`, of the wide one to a fifth.
+SignalSettings signals_in(RowBand band, std::span<const Log> logs);
+
+// Hz, up to which such rows hold forces.
+double end_of_band(const SignalSettings& settings);
 
 // Samples `begin` to before `end` of `log`.
 Log part_of(const Log& log, std::size_t begin, std::size_t end);

@@ -157,7 +157,10 @@ void Dictionary::whiten(const ActiveSet& set, bool absorbed) {
   if (!left_out_) respond_under(noise);
 }
 
-void Dictionary::scan_lines(const ActiveSet& set) {
+void Dictionary::scan_lines(const ActiveSet& set, const ActiveSet& other) {
+  auto kept = set;
+  kept.insert(kept.end(), other.begin(), other.end());
+  drop_all_but(kept);
   find_lines(rows_, residual(set), evidence_.whitening(), scene_);
   add_options(true);
 }
@@ -295,19 +298,27 @@ std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::v
   return odds;
 }
 
-// Columns of replays may lie behind those that are dropped: each option that stays is given its columns once more.
 void Dictionary::begin_again() {
   static_cast<Scans&>(scene_) = {};
-  options_.resize(on_grid_);
-  std::vector<std::vector<Eigen::VectorXd>> columns(on_grid_);
-  for (std::size_t k = 0; k < on_grid_; ++k)
-    for (const auto column : options_[k]->group.columns) columns[k].push_back(evidence_.column(column));
-  for (auto* evidence : {&evidence_, &plain_}) evidence->truncate(0);
-  for (std::size_t k = 0; k < on_grid_; ++k) {
-    options_[k]->log_prior = log_prior_of(scene_, options_[k]->candidate, options_[k]->shape);
-    options_[k]->group = add_group(evidence_, columns[k]);
-    plain_.add(columns[k]);
-  }
+  drop_all_but({});
+  for (const auto& option : options_) option->log_prior = log_prior_of(scene_, option->candidate, option->shape);
+}
+
+// The options of the grids stay, with their columns, which may lie behind those that are dropped where they are of
+// replays.
+void Dictionary::drop_all_but(const ActiveSet& kept) {
+  const auto found = options_.begin() + static_cast<std::ptrdiff_t>(on_grid_);
+  options_.erase(
+      std::remove_if(found, options_.end(),
+                     [&](const auto& each) { return std::find(kept.begin(), kept.end(), each.get()) == kept.end(); }),
+      options_.end());
+  ColumnIndices columns;
+  for (const auto& option : options_)
+    for (auto& column : option->group.columns) {
+      columns.push_back(column);
+      column = static_cast<Eigen::Index>(columns.size()) - 1;
+    }
+  for (auto* evidence : {&evidence_, &plain_}) evidence->keep(columns);
 }
 
 std::optional<Dictionary::Option> Dictionary::at_shape(std::size_t candidate, double shape, const ActiveSet& beside,

@@ -36,8 +36,9 @@ class Dictionary {
   // The noise is what the set leaves; where more may be found yet, what all candidates together leave beside it:
   // `absorbed`.
   void whiten(const ActiveSet& set, bool absorbed);
-  // Looks for lines in what the set leaves, for options of the periodic candidates; those in the set stay.
-  void scan_lines(const ActiveSet& set);
+  // Looks for lines in what the set leaves, for options of the periodic candidates. What was found or refined before is
+  // dropped, but for what is in the set and in the `other` one.
+  void scan_lines(const ActiveSet& set, const ActiveSet& other);
 
   Posterior posterior(const ActiveSet& set) const;
   // Log likelihood of the set with the noise that it leaves, less its price: what tells apart sets that leave different
@@ -80,6 +81,7 @@ class Dictionary {
  private:
   std::vector<double> values_of(const Candidate& candidate, bool scanned) const;
   void add_options(bool scanned);
+  void drop_all_but(const ActiveSet& kept);
   void give_columns(const std::vector<Atom*>& options);
   void respond_under(const Eigen::VectorXd& noise);
   bool possible(const Atom& atom, const ActiveSet& beside, const Posterior& of_beside, double size) const;

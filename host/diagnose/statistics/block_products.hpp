@@ -20,6 +20,11 @@ class BlockProducts {
   void replace(std::size_t index, Eigen::VectorXd column);
   // Drops all columns from `first` on.
   void truncate(std::size_t first);
+  // Leaves those with the indices `kept`, in this order, and none of the products.
+  void keep(std::span<const std::size_t> kept);
+  // Works out what is not known yet of the products of each of `some` with each of them and with each of `others`:
+  // block by block, which takes less time than pair by pair.
+  void ask_for(std::span<const std::size_t> some, std::span<const std::size_t> others) const;
 
   // Of two columns over the rows of all blocks, and over those of each: until other products are asked for.
   double total(std::size_t one, std::size_t other) const { return totals_[known(one, other)]; }
@@ -30,10 +35,15 @@ class BlockProducts {
 
  private:
   static constexpr std::size_t unknown = static_cast<std::size_t>(-1);
+  struct Pair {
+    std::size_t one, other, place;  // the last in the products
+  };
   // Place of a pair in the products.
   std::size_t known(std::size_t one, std::size_t other) const;
-  // Works out a pair's products and keeps them at that place.
-  void multiply(std::size_t one, std::size_t other, std::size_t place) const;
+  // A place for the products of one more pair.
+  std::size_t new_place() const;
+  // Works out these products.
+  void multiply(std::span<const Pair> pairs) const;
 
   std::vector<RowBlock> blocks_;
   std::vector<Eigen::VectorXd> columns_;

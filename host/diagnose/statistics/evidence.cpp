@@ -41,6 +41,24 @@ void Evidence::truncate(Eigen::Index first) {
   white_.truncate(place(first));
 }
 
+void Evidence::keep(const ColumnIndices& kept) {
+  std::vector<Eigen::VectorXd> columns;
+  for (const auto column : kept) columns.push_back(std::move(columns_[static_cast<std::size_t>(column)]));
+  columns_ = std::move(columns);
+  white_.keep(places(kept));
+}
+
+std::vector<std::size_t> Evidence::places(const ColumnIndices& columns) {
+  std::vector<std::size_t> all{of_target};
+  for (const auto column : columns) all.push_back(place(column));
+  return all;
+}
+
+void Evidence::ask_for(const ColumnIndices& some, const ColumnIndices& others) const {
+  const auto own = places(some);
+  white_.ask_for(std::span(own).subspan(1), places(others));  // with the target's
+}
+
 void Evidence::retarget(Eigen::VectorXd target) {
   target_ = std::move(target);
   white_.replace(of_target, whitening_(target_));
@@ -78,6 +96,7 @@ void Evidence::for_pairs(const ColumnIndices& chosen, Each&& each) {
 
 Evidence::Sums Evidence::total_of(const ColumnIndices& chosen) const {
   const auto count = static_cast<Eigen::Index>(chosen.size());
+  white_.ask_for(places(chosen), {});
   Sums sums{Eigen::MatrixXd(count, count), Eigen::VectorXd(count), total()};
   for (Eigen::Index i = 0; i < count; ++i)
     sums.moment[i] = white_.total(of_target, place(chosen[static_cast<std::size_t>(i)]));
@@ -90,6 +109,7 @@ Evidence::Sums Evidence::total_of(const ColumnIndices& chosen) const {
 std::vector<Evidence::Sums> Evidence::by_block(const ColumnIndices& chosen) const {
   const auto count = static_cast<Eigen::Index>(chosen.size());
   std::vector<Sums> all(blocks_.size(), {Eigen::MatrixXd(count, count), Eigen::VectorXd(count), 0.0});
+  white_.ask_for(places(chosen), {});
   const auto square = white_.by_block(of_target, of_target);
   for (std::size_t b = 0; b < all.size(); ++b) all[b].square = square[b];
   for (Eigen::Index i = 0; i < count; ++i) {

@@ -24,6 +24,8 @@ class Evidence {
   Eigen::Index add(const std::vector<Eigen::VectorXd>& columns);
   // Drops all columns from `first` on.
   void truncate(Eigen::Index first);
+  // Leaves the columns `kept`, in this order.
+  void keep(const ColumnIndices& kept);
   // Looks at target and columns through `whitening` from now on; without it, as they are. `correlated`: rows that
   // belong together still: the clusters of covariances are no shorter (0: whole blocks).
   void whiten(Whitening whitening, std::size_t correlated = 0);
@@ -40,6 +42,8 @@ class Evidence {
   // Whitened: of two columns, and of a column with the target.
   double product(Eigen::Index one, Eigen::Index other) const { return white_.total(place(one), place(other)); }
   double moment(Eigen::Index column) const { return white_.total(of_target, place(column)); }
+  // Works out together what these will be asked for: of the columns `some`, with each other, the target and `others`.
+  void ask_for(const ColumnIndices& some, const ColumnIndices& others) const;
   const Eigen::VectorXd& target() const { return target_; }  // not whitened
   const Whitening& whitening() const { return whitening_; }
 
@@ -112,6 +116,8 @@ class Evidence {
   const Eigen::VectorXd& white_target() const { return white_.column(of_target); }
   // Of a column in white_.
   static std::size_t place(Eigen::Index column) { return static_cast<std::size_t>(column) + 1; }
+  // Of the target and of columns.
+  static std::vector<std::size_t> places(const ColumnIndices& columns);
   static constexpr std::size_t of_target = 0;
 
   Eigen::VectorXd target_;

@@ -37,6 +37,7 @@ Posterior::Posterior(const Evidence& evidence, Sizes sizes) : evidence_(evidence
 
 Posterior::Beside Posterior::beside(const Group& group) const {
   const auto own = static_cast<Eigen::Index>(group.columns.size()), in = static_cast<Eigen::Index>(columns_.size());
+  evidence_.ask_for(group.columns, columns_);
   Beside b{Eigen::MatrixXd(in, own), Eigen::MatrixXd(own, own), Eigen::VectorXd(own)};
   for (Eigen::Index i = 0; i < own; ++i) {
     const auto column = group.columns[static_cast<std::size_t>(i)];
