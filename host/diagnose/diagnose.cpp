@@ -218,13 +218,22 @@ void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained
                    verdict.closed_loop_withheld, verdict.units);
 }
 
-Verdict diagnose_in(RowBand band, const DiagnoseInput& input) {
+// Whether a run of the file is taken off the records, in all that the rows hold.
+bool less_own_runs(const Prepared& prepared) {
+  const auto has_set_points = [&](const Log& log) { return !channels_of(log, prepared.axis).x_set.empty(); };
+  return prepared.known_motion &&
+         std::all_of(prepared.training.logs.begin(), prepared.training.logs.end(), has_set_points);
+}
+
+// In the wide band nothing where that does not hold for the records, or no force has a name.
+std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
   const auto begin = [&](std::size_t part) {
     if (input.progress) input.progress(diagnosis_parts[part]);
   };
   Verdict verdict;
   begin(0);
   const auto of_file = prepare(input, band, verdict);
+  if (band == RowBand::wide && !less_own_runs(*of_file)) return {};
   // Said once.
   Verdict again;
   const auto behind = behind_master(input, *of_file);
@@ -240,6 +249,7 @@ Verdict diagnose_in(RowBand band, const DiagnoseInput& input) {
   const Eigen::VectorXd comparable = in_same_state(verdict, records, found);
   const HeldOutData unseen{held_out.regressors, comparable, records.context, records.responses, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
+  if (band == RowBand::wide && explained.found.terms.empty()) return {};
   give_figures(verdict, records, explained, unseen);
   begin(4);
   propose_next_measurement(verdict,
@@ -263,34 +273,32 @@ Verdict diagnose_in(RowBand band, const DiagnoseInput& input) {
   return verdict;
 }
 
-bool names_cause(const Verdict& verdict) {
-  return std::any_of(verdict.findings.begin(), verdict.findings.end(),
-                     [](const Finding& finding) { return finding.names_cause(); });
-}
-
 // Where faster forces give a name, what was found in those.
 std::optional<Verdict> diagnose_faster(const DiagnoseInput& input) {
   auto logs = input.logs;
   logs.insert(logs.end(), input.held_out.begin(), input.held_out.end());
-  const double usual = end_of_band(signals_in(RowBand::usual, logs)), wide = end_of_band(signals_in(RowBand::wide, logs));
+  const double usual = end_of_band(signals_in(RowBand::usual, logs));
+  const double wide = end_of_band(signals_in(RowBand::wide, logs));
   if (!(wide > usual)) return {};
+  if (input.progress) input.progress(diagnosis_parts.back());
   auto silent = input;
   silent.progress = nullptr;
-  if (input.progress) input.progress(diagnosis_parts.back());
   auto verdict = diagnose_in(RowBand::wide, silent);
-  if (!names_cause(verdict)) return {};
-  verdict.notes.push_back(
-      fmt::format("In forces up to {:.0f} Hz no cause was found, and they do not agree with the file. These are the "
-                  "causes found in forces up to {:.0f} Hz.",
-                  usual, wide));
+  if (verdict)
+    verdict->notes.push_back(
+        fmt::format("In forces up to {:.0f} Hz no cause was found, and they do not agree with the file. These are the "
+                    "causes found in forces up to {:.0f} Hz.",
+                    usual, wide));
   return verdict;
 }
 
 }  // namespace
 
 Verdict diagnose(const DiagnoseInput& input) {
-  auto verdict = diagnose_in(RowBand::usual, input);
-  if (!verdict.agreement || verdict.agreement->status != Status::does_not_agree || names_cause(verdict)) return verdict;
+  auto verdict = *diagnose_in(RowBand::usual, input);
+  const bool named = std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                                 [](const Finding& finding) { return finding.names_cause(); });
+  if (named || !verdict.agreement || verdict.agreement->status != Status::does_not_agree) return verdict;
   return diagnose_faster(input).value_or(std::move(verdict));
 }
 

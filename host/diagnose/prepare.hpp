@@ -28,8 +28,8 @@ struct Prepared {
   Prepared& operator=(const Prepared&) = delete;
 };
 
-// In rows of the `band`. Notes and questions go to the `verdict`. Throws LogError for logs of the `input` that cannot be
-// used (record_checks.hpp, suitability.hpp).
+// In rows of the `band`. Notes and questions go to the `verdict`. Throws LogError for logs of the `input` that cannot
+// be used (record_checks.hpp, suitability.hpp).
 std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, RowBand band, Verdict& verdict);
 
 }  // namespace stiction::host

@@ -23,9 +23,9 @@ struct SignalSettings {
   // the position is filtered only where the log is five times as fast as `cutoff`, and its derivatives are those of 11
   // points, so that rows may reach to 0.3 of the log's rate.
   double band = 0.0;
-  // The position's filter acts on the position alone. Rows that end at half of its edge have lost 0.4 % to it, and, at a
-  // tenth of the log's rate, 0.04 % to the differences. Rows that reach further compare a filtered motion with a force
-  // that still has everything: then the jumps of friction at reversals have no motion to belong to.
+  // The position's filter acts on the position alone. Rows that end at half of its edge have lost 0.4 % to it, and, at
+  // a tenth of the log's rate, 0.04 % to the differences. Rows that reach further compare a filtered motion with a
+  // force that still has everything: then the jumps of friction at reversals have no motion to belong to.
   double highest = 0.2;
 };
 

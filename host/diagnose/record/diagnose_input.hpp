@@ -14,8 +14,8 @@ namespace stiction::host {
 
 // What a diagnosis does, one after the other; the last only where the others leave something without a name.
 inline constexpr std::array<std::string_view, 7> diagnosis_parts{
-    "simulated motion", "selection",   "refinement in closed loop", "held-out data",
-    "next measurement", "closed loop", "faster forces"};
+    "simulated motion", "selection",    "refinement in closed loop", "held-out data", "next measurement",
+    "closed loop",      "faster forces"};
 
 struct DiagnoseInput {
   machine::Machine machine;

@@ -33,8 +33,9 @@ SignalSettings signals_in(RowBand band, std::span<const Log> logs) {
     s.highest = 0.4;
     s.row_rate = s.cutoff = std::max(s.row_rate, std::min(highest_row_rate, most_rows / seconds));
   }
-  // A slower log's rows hold frequencies up to a tenth of its rate. Rows that come faster than that needs say little of
-  // their own, and what they say above the filter's edge is rounding, which whitening would take for evidence.
+  // Rows of a slower log hold frequencies up to half of this share of its rate. Rows that come faster than that needs
+  // say little of their own, and what they say above the filter's edge is rounding, which whitening would take for
+  // evidence.
   s.row_rate = std::min(s.row_rate, 1.25 * s.highest * rate);
   s.cutoff = std::min(s.cutoff, s.highest * rate);
   return s;

@@ -11,8 +11,8 @@
 
 namespace stiction::host {
 
-// The forces that a diagnosis looks at: those below 100 Hz, in which the share of an effect is counted; and of records in
-// which these leave something without a name the faster ones too.
+// The forces that a diagnosis looks at: those below 100 Hz, in which the share of an effect is counted; and of records
+// in which these leave something without a name the faster ones too.
 enum class RowBand { usual, wide };
 
 // Rows that hold the forces of the `band`: of the usual one no further than to a tenth of the rate of the slowest of

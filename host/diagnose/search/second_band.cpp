@@ -58,11 +58,11 @@ void compare_bands(Verdict& verdict, std::span<const Term> terms, const LogRows&
         fmt::format(" Amplitude below {:g} Hz: {:.2f} of the fitted one, with a 95 % interval of +- {:.2f}.", edge,
                     ratio, 2.0 * error);
     if (std::abs(ratio - 1.0) > std::max(contradiction * error, least_difference))
-      verdict.notes.push_back(
-          fmt::format("{} depends on the frequency band: its amplitude below {:g} Hz is {:.2f} of that up to {:.0f} Hz, "
-                      "with a 95 % interval of +- {:.2f}. This cause does not depend on frequency by definition, which "
-                      "indicates an additional one that does, such as a delay or an elastic part.",
-                      finding.effect.name(), edge, ratio, end_of_band(context.signals), 2.0 * error));
+      verdict.notes.push_back(fmt::format(
+          "{} depends on the frequency band: its amplitude below {:g} Hz is {:.2f} of that up to {:.0f} Hz, "
+          "with a 95 % interval of +- {:.2f}. This cause does not depend on frequency by definition, which "
+          "indicates an additional one that does, such as a delay or an elastic part.",
+          finding.effect.name(), edge, ratio, end_of_band(context.signals), 2.0 * error));
   }
 }
 

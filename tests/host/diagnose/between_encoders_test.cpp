@@ -75,7 +75,7 @@ machine::AxisModel plain_axis() {
 Record record_of(const machine::AxisModel& axis, std::vector<Log> logs, SignalSettings& settings) {
   Record record;
   record.logs = linear_logs(logs, {axis});
-  settings = wide_band(record.logs);
+  settings = signals_in(host::RowBand::usual, record.logs);
   measure(record, axis, settings);
   return record;
 }

@@ -63,7 +63,7 @@ TEST(CamLog, WhatComesBackInEachCycleIsNoDisturbance) {
   const auto axis = cam_stand().axes.front();
   Record record;
   record.logs = linear_logs({cam_log(cam_stand(), 130.0, 9, 16)}, axis);
-  measure(record, axis, wide_band(record.logs));
+  measure(record, axis, signals_in(host::RowBand::usual, record.logs));
   std::mt19937_64 random(7);
   std::normal_distribution<> noise;
   Eigen::VectorXd values(record.rows.rows()), wave(values.size());

@@ -56,7 +56,7 @@ double share_missed(const ElasticMode& mode, bool sliding) {
   const auto machine = one_axis(sliding);
   const auto& axis = machine.axes.front();
   const std::vector<Log> logs{ordered()};
-  const auto settings = wide_band(logs);
+  const auto settings = signals_in(host::RowBand::usual, logs);
   const auto motion = without_noise(machine, 0, logs).motion;
   if (motion.empty()) return INFINITY;
   const auto rows = rows_of(motion, axis, settings);

@@ -15,8 +15,8 @@
 #include "host/identify/standstill.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/parameters.hpp"
+#include "tests/host/diagnose/dwelling_record.hpp"
 #include "tests/host/diagnose/synthetic_log.hpp"
-#include "tests/support/shipped_machine.hpp"
 
 namespace stiction::host {
 namespace {
@@ -55,7 +55,7 @@ struct Both {
   explicit Both(const Log& record, const Log& run)
       : axis(creeping_axis()),
         logs{record},
-        settings(wide_band(logs)),
+        settings(signals_in(host::RowBand::usual, logs)),
         measured(rows_of(logs, axis, settings)),
         runs(rows_of({run}, axis, settings)),
         beside(logs, measured, axis, settings) {}
@@ -128,52 +128,17 @@ TEST(HeldStill, IsNothingOfAnEncodersNoise) {
   EXPECT_EQ(std::accumulate(alone.begin(), alone.begin() + 1180, 0.0), 0.0);
 }
 
-namespace {
-
-// X of the cross table with friction that follows the speed alone.
-machine::Machine rigid_machine() {
-  auto machine = test::cross_table();
-  machine.axes.resize(1);
-  auto& axis = machine.axes.front();
-  axis.friction.use = "coulomb_viscous";
-  axis.effects.clear();
-  axis.encoder.noise = axis.position_controller.increment = 0.0;
-  axis.encoder.increment = 1e-7;
-  return machine;
-}
-
-// Strokes of some millimetres to and fro with 0.2 s of rest between them.
-Log dwelling(const std::string& source, double stroke, double duration) {
-  Log log;
-  log.source = source;
-  log.period = 1e-3;
-  log.axes.resize(1);
-  auto& axis = log.axes.front();
-  for (int k = 0; k < 6000; ++k) {
-    const double t = 1e-3 * k, cycle = duration + 0.2;
-    const auto strokes = static_cast<int>(t / cycle);
-    const double u = std::min((t - cycle * strokes) / duration, 1.0);
-    const double lift = u * u * u * (10.0 + u * (6.0 * u - 15.0));
-    log.t.push_back(t);
-    axis.x_set.push_back(stroke * (strokes % 2 == 0 ? lift : 1.0 - lift));
-    axis.x.push_back(axis.x_set.back());
-    axis.i.push_back(0.0);
-  }
-  return log;
-}
-
-}  // namespace
-
 // The machine has a contact of 40 um, its file none.
 TEST(HeldStill, NamesPreslidingBehindDwells) {
   DiagnoseInput input;
-  input.machine = rigid_machine();
+  input.machine = test::rigid_machine();
   input.next_measurement = false;
   auto truth = input.machine;
   const double level = sim::parameters_of<sim::CoulombViscous<>>(truth.axes.front().friction).coulomb;
   truth.axes.front().effects.push_back(
       {"presliding_hysteresis", {{"stiffness", {level * std::log(10.0) / 40e-6}}, {"distance", {40e-6}}}});
-  const std::vector logs{dwelling("slow", 3e-3, 0.4), dwelling("quick", 8e-3, 0.3), dwelling("other", 5e-3, 0.35)};
+  const std::vector logs{test::dwelling("slow", 3e-3, 0.4), test::dwelling("quick", 8e-3, 0.3),
+                         test::dwelling("other", 5e-3, 0.35)};
   const auto records = without_noise(truth, 0, logs).replayed;
   for (std::size_t k = 0; k < logs.size(); ++k) {
     auto record = records[k];

@@ -42,7 +42,7 @@ Log record(double duration = 20.0) {
 }
 
 NoiseFloor floor_of(const Log& log, const machine::AxisModel& axis) {
-  const auto settings = wide_band({&log, 1});
+  const auto settings = signals_in(host::RowBand::usual, {&log, 1});
   const auto rows = rows_of({log}, axis, settings);
   return noise_floor({log}, axis, settings, Eigen::VectorXd::Ones(rows.rows()), {}, expected_force(rows, axis), 1);
 }

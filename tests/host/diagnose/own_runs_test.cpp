@@ -68,7 +68,7 @@ TEST(OwnRuns, LeaveFewerIncrementsOnAverage) {
   const auto& axis = machine.axes.front();
   Record record;
   record.logs = {recorded_elsewhere(machine)};
-  const auto settings = wide_band(record.logs);
+  const auto settings = signals_in(host::RowBand::usual, record.logs);
   measure(record, axis, settings);
   const Eigen::VectorXd raw = record.target;
   const auto motion = drive(record, machine, 0);
@@ -87,7 +87,7 @@ TEST(OwnRuns, MoveOnOtherIncrementsThanTheRecord) {
   const auto& axis = machine.axes.front();
   Record record;
   record.logs = {recorded_elsewhere(machine)};
-  const auto settings = wide_band(record.logs);
+  const auto settings = signals_in(host::RowBand::usual, record.logs);
   measure(record, axis, settings);
   const auto motion = drive(record, machine, 0);
   ASSERT_FALSE(motion.empty());
@@ -104,7 +104,7 @@ TEST(OwnRuns, BearOutNoTermThatTheyDoNotShow) {
   const auto machine = coarse_axis();
   Record record;
   record.logs = {recorded_elsewhere(machine)};
-  const auto settings = wide_band(record.logs);
+  const auto settings = signals_in(host::RowBand::usual, record.logs);
   const auto& axis = machine.axes.front();
   measure(record, axis, settings);
   const auto motion = drive(record, machine, 0);

@@ -17,7 +17,7 @@ namespace {
 // Trajectory 0 of the synthetic logs, from 0 to 0.25 m.
 host::LogRows rows() {
   const std::vector<host::Log> logs{synthetic_log(0, {}, 1.0, 1)};
-  return host::rows_of(logs, bench_machine().axes.front(), host::wide_band(logs));
+  return host::rows_of(logs, bench_machine().axes.front(), host::signals_in(host::RowBand::usual, logs));
 }
 
 Eigen::VectorXd along(const host::LogRows& rows, double (*force)(double x)) {

@@ -110,3 +110,29 @@ TEST(SearchSums, another_target_has_the_products_of_its_own) {
   EXPECT_EQ(evidence.fit({0, 1}).coefficients, direct.fit({0, 1}).coefficients);
   EXPECT_EQ(evidence.held_out({0, 1}), direct.held_out({0, 1}));
 }
+
+TEST(SearchSums, columns_that_stay_or_take_the_place_of_others_have_their_own_products) {
+  const Eigen::Index rows = 400;
+  const auto target = drawn(rows, 30);
+  const auto a = drawn(rows, 31), b = drawn(rows, 32), c = drawn(rows, 33), d = drawn(rows, 34);
+  Evidence evidence(target, {{0, 100}, {100, 250}, {250, 400}});
+  const auto expect = [&](const std::vector<Eigen::VectorXd>& columns) {
+    const double tolerance = 1e-12 * static_cast<double>(rows);  // rounding
+    ASSERT_EQ(evidence.columns(), static_cast<Eigen::Index>(columns.size()));
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const auto one = static_cast<Eigen::Index>(i);
+      EXPECT_NEAR(evidence.moment(one), target.dot(columns[i]), tolerance);
+      for (std::size_t j = 0; j < columns.size(); ++j)
+        EXPECT_NEAR(evidence.product(one, static_cast<Eigen::Index>(j)), columns[i].dot(columns[j]), tolerance);
+    }
+  };
+  evidence.add({a, b, c});
+  evidence.ask_for({0, 1}, {2});
+  expect({a, b, c});
+  evidence.truncate(1);
+  evidence.add({d});
+  expect({a, d});
+  evidence.add({b});
+  evidence.keep({2, 0});
+  expect({b, a});
+}

@@ -46,7 +46,7 @@ host::Log stopping() {
 TEST(Standstill, LeavesOutWhatStandsAsFarAsTheFilterReaches) {
   const auto axis = rigid_axis();
   const std::vector<host::Log> logs{stopping()};
-  const auto settings = host::wide_band(logs);
+  const auto settings = host::signals_in(host::RowBand::usual, logs);
   const auto rows = host::rows_of(logs, axis, settings);
   const auto moves = host::moving_rows(rows, axis, settings.cutoff);
   const double reach = 2.0 / settings.cutoff, row = rows.period(0);
@@ -66,7 +66,7 @@ TEST(Standstill, LeavesOutWhatStandsAsFarAsTheFilterReaches) {
 TEST(Standstill, OfALawWithAContactCountsLikeMotion) {
   const auto axis = bench_machine().axes.front();
   const std::vector<host::Log> logs{stopping()};
-  const auto settings = host::wide_band(logs);
+  const auto settings = host::signals_in(host::RowBand::usual, logs);
   const auto moves = host::moving_rows(host::rows_of(logs, axis, settings), axis, settings.cutoff);
   EXPECT_EQ(moves.minCoeff(), 1.0);
 }
@@ -82,7 +82,7 @@ TEST(Standstill, CountsAContactFromItsFirstSlideOn) {
   for (std::size_t k = 0; k < shivering.t.size(); ++k)
     shivering.axes.front().x[k] = 0.5 * forgotten * std::sin(0.01 * static_cast<double>(k));
   const std::vector<host::Log> logs{stopping(), shivering};
-  const auto settings = host::wide_band(logs);
+  const auto settings = host::signals_in(host::RowBand::usual, logs);
   const auto rows = host::rows_of(logs, axis, settings);
   const auto counts = host::rows_after_first_slide(rows, axis);
   const auto second = static_cast<Eigen::Index>(rows.logs()[1]);
