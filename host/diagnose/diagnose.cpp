@@ -22,6 +22,8 @@
 #include "host/diagnose/judge/withdrawal.hpp"
 #include "host/diagnose/next_measurement/next_measurement.hpp"
 #include "host/diagnose/prepare.hpp"
+#include "host/diagnose/record/followed_set_points.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/search/search.hpp"
 #include "host/diagnose/search/second_band.hpp"
 #include "sim/effects/time_skew/time_skew.hpp"
@@ -220,9 +222,7 @@ void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained
 
 // Whether a run of the file is taken off the records, in all that the rows hold.
 bool less_own_runs(const Prepared& prepared) {
-  const auto has_set_points = [&](const Log& log) { return !channels_of(log, prepared.axis).x_set.empty(); };
-  return prepared.known_motion &&
-         std::all_of(prepared.training.logs.begin(), prepared.training.logs.end(), has_set_points);
+  return prepared.known_motion && have_set_points(prepared.training.logs, prepared.axis);
 }
 
 // In the wide band nothing where that does not hold for the records, or no force has a name.

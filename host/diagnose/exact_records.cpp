@@ -30,9 +30,7 @@ class Maker {
         disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), original.regressors, rows().time,
                      rows().period(0)),
         driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
-        own_motion_(!prepared.known_motion ||
-                    std::any_of(original_.logs.begin(), original_.logs.end(),
-                                [&](const Log& log) { return channels_of(log, prepared.axis).x_set.empty(); })) {
+        own_motion_(!prepared.known_motion || !have_set_points(original_.logs, prepared.axis)) {
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
     if (own_motion_) return;

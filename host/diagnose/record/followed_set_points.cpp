@@ -104,6 +104,10 @@ class Follower {
 
 }  // namespace
 
+bool have_set_points(const std::vector<Log>& logs, const machine::AxisModel& axis) {
+  return std::none_of(logs.begin(), logs.end(), [&](const Log& log) { return channels_of(log, axis).x_set.empty(); });
+}
+
 std::vector<Log> with_recorded_set_points(const machine::AxisModel& axis, std::vector<Log> logs, double cutoff) {
   for (auto& log : logs) {
     auto& channels = channels_of(log, axis);

@@ -12,6 +12,9 @@
 
 namespace stiction::host {
 
+// Whether each of the `logs` has set positions of `axis`.
+bool have_set_points(const std::vector<Log>& logs, const machine::AxisModel& axis);
+
 // Whether a simulation has to go the way of the record. A draw of the exact machine that sticks elsewhere is a draw all
 // the same.
 enum class Following { as_recorded, as_near_as_it_comes };

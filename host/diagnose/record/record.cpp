@@ -27,9 +27,7 @@ constexpr std::array parts_of_residual{0.125, 0.625, 0.875};
 // the record elsewhere, a column of friction would describe that difference. 1: known; 0: not.
 Eigen::VectorXd known_friction(const Record& record, const machine::AxisModel& axis, double cutoff) {
   Eigen::VectorXd known = Eigen::VectorXd::Ones(record.target.size());
-  if (std::none_of(record.logs.begin(), record.logs.end(),
-                   [&](const Log& log) { return channels_of(log, axis).x_set.empty(); }))
-    return known;
+  if (have_set_points(record.logs, axis)) return known;
   constexpr double of_normal = 0.6745;  // its deviations' median over its standard deviation
   const auto friction = [&](const Motion& motion) { return friction_along(axis, motion); };
   const Eigen::VectorXd off = record.rows.stacked(friction) - record.regressors.stacked(friction);

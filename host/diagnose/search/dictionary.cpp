@@ -157,9 +157,9 @@ void Dictionary::whiten(const ActiveSet& set, bool absorbed) {
   if (!left_out_) respond_under(noise);
 }
 
-void Dictionary::scan_lines(const ActiveSet& set, const ActiveSet& other) {
+void Dictionary::scan_lines(const ActiveSet& set, const ActiveSet& known) {
   auto kept = set;
-  kept.insert(kept.end(), other.begin(), other.end());
+  kept.insert(kept.end(), known.begin(), known.end());
   drop_all_but(kept);
   find_lines(rows_, residual(set), evidence_.whitening(), scene_);
   add_options(true);
@@ -298,9 +298,8 @@ std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::v
   return odds;
 }
 
-void Dictionary::begin_again() {
-  static_cast<Scans&>(scene_) = {};
-  drop_all_but({});
+void Dictionary::begin_again(const ActiveSet& known) {
+  drop_all_but(known);
   for (const auto& option : options_) option->log_prior = log_prior_of(scene_, option->candidate, option->shape);
 }
 

@@ -37,8 +37,8 @@ class Dictionary {
   // `absorbed`.
   void whiten(const ActiveSet& set, bool absorbed);
   // Looks for lines in what the set leaves, for options of the periodic candidates. What was found or refined before is
-  // dropped, but for what is in the set and in the `other` one.
-  void scan_lines(const ActiveSet& set, const ActiveSet& other);
+  // dropped, but for what is in the set and what is `known`.
+  void scan_lines(const ActiveSet& set, const ActiveSet& known);
 
   Posterior posterior(const ActiveSet& set) const;
   // Log likelihood of the set with the noise that it leaves, less its price: what tells apart sets that leave different
@@ -64,9 +64,9 @@ class Dictionary {
   // leaves in the others; options and replays are those of all logs.
   void leave_out(const ActiveSet& set, std::size_t part, std::size_t parts);
   void take_all();
-  // Drops what was found and refined since the start, so that a further search is offered what the first one was, with
-  // each option's price as the context has it now.
-  void begin_again();
+  // Drops what was found and refined since the start but for what is `known`, and gives each option its price as the
+  // context has it now.
+  void begin_again(const ActiveSet& known);
   // The `option` with its nonlinear parameter between the values of the grid; `beside` and `of_beside` as above.
   Option refined(Option option, const ActiveSet& beside, const Posterior& of_beside);
 

@@ -56,7 +56,7 @@ class Search : private Dictionary {
  private:
   std::vector<Option> options_beside(const ActiveSet& set, const Posterior& of_set) const;
   std::vector<Option> refined_best(const ActiveSet& set, const Posterior& of_set);
-  ActiveSet searched_from(bool absorbed, const ActiveSet& other);
+  ActiveSet searched_from(bool absorbed, const ActiveSet& known);
   bool grow(ActiveSet& set);
   bool grow_by_pair(ActiveSet& set, const std::vector<Option>& options);
   bool move_one(ActiveSet& set);
@@ -244,16 +244,16 @@ std::vector<Term> Search::terms_of(const ActiveSet& set) {
   return terms;
 }
 
-// From noise that is what is left now, or what is left when all candidates have taken what they can. What is in the
-// `other` set stays an option.
-Dictionary::ActiveSet Search::searched_from(bool absorbed, const ActiveSet& other) {
+// From noise that is what is left now, or what is left when all candidates have taken what they can. What is `known`
+// stays an option.
+Dictionary::ActiveSet Search::searched_from(bool absorbed, const ActiveSet& known) {
   ActiveSet set;
   whiten(set, absorbed);
-  scan_lines(set, other);
+  scan_lines(set, known);
   for (std::size_t round = 0; round < most_rounds && set.size() < most_terms && grow(set); ++round) {
     improve(set);
     whiten(set, false);
-    scan_lines(set, other);
+    scan_lines(set, known);
   }
   // What stays is judged by the noise that it leaves.
   improve(set);
@@ -323,7 +323,7 @@ SearchResult Search::run_calibrated() {
       changed = changed || scene_.prices[names[k]] > 0.0 || scene_.hurdles[names[k]] > 0.0;
     }
     if (!changed) break;
-    begin_again();
+    begin_again(found_);
     result = run();
   }
   if (calibration) result.exact_records = calibration->records();
@@ -359,9 +359,11 @@ void Search::search_without_each_log(SearchResult& result) {
 SearchResult Search::run() {
   discarded_.clear();
   refused_.clear();
-  auto set = searched_from(true, {});
+  auto known = found_;
+  auto set = searched_from(true, known);
+  known.insert(known.end(), set.begin(), set.end());
   const double of_first = with_own_noise(set);
-  const auto other = searched_from(false, set);
+  const auto other = searched_from(false, known);
   const double of_other = with_own_noise(other);
   if (of_other > of_first) set = other;
   whiten(set, false);
