@@ -220,12 +220,7 @@ void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained
                    verdict.closed_loop_withheld, verdict.units);
 }
 
-// Whether a run of the file is taken off the records, in all that the rows hold.
-bool less_own_runs(const Prepared& prepared) {
-  return prepared.known_motion && have_set_points(prepared.training.logs, prepared.axis);
-}
-
-// In the wide band nothing where that does not hold for the records, or no force has a name.
+// In the wide band nothing where no run of the file is taken off the records, or no force has a name.
 std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
   const auto begin = [&](std::size_t part) {
     if (input.progress) input.progress(diagnosis_parts[part]);
@@ -233,7 +228,7 @@ std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
   Verdict verdict;
   begin(0);
   const auto of_file = prepare(input, band, verdict);
-  if (band == RowBand::wide && !less_own_runs(*of_file)) return {};
+  if (band == RowBand::wide && !of_file->known_motion) return {};
   // Said once.
   Verdict again;
   const auto behind = behind_master(input, *of_file);
@@ -277,9 +272,12 @@ std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
 std::optional<Verdict> diagnose_faster(const DiagnoseInput& input) {
   auto logs = input.logs;
   logs.insert(logs.end(), input.held_out.begin(), input.held_out.end());
+  // Without set-points the motion is known no further than the usual band.
+  if (!have_set_points(logs, input.machine.axes[input.axis])) return {};
   const double usual = end_of_band(signals_in(RowBand::usual, logs));
   const double wide = end_of_band(signals_in(RowBand::wide, logs));
-  if (!(wide > usual)) return {};
+  constexpr double worth_it = 1.5;  // of the usual band: less shows what has been looked at
+  if (wide < worth_it * usual) return {};
   if (input.progress) input.progress(diagnosis_parts.back());
   auto silent = input;
   silent.progress = nullptr;
