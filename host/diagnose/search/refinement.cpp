@@ -86,14 +86,21 @@ class Refinement {
     return at;
   }
 
-  // The place of the slope moves to the weight that the slope gives.
+  // The place of the slope moves to the weight that the slope gives, for as long as that fits better.
   void settle(std::size_t k) {
+    Eigen::VectorXd weights = weights_of(stacked());
+    double left = (white_target_ - stacked() * weights).squaredNorm();
     for (int i = 0; i < settling_steps; ++i) {
-      const double weight = weights_of(stacked())[first_weight(k)];
+      const double weight = weights[first_weight(k)];
       if (weight == 0.0 || !std::isfinite(weight) || std::abs(weight - terms_[k].shape) < settled * std::abs(weight))
         break;
-      terms_[k].shape = weight;
-      white_[k] = whitened(group(terms_[k], weight));
+      const auto before = white_[k];
+      const double next = left_with(k, weight);
+      if (next > left) {
+        white_[k] = before;
+        break;
+      }
+      terms_[k].shape = weight, left = next, weights = weights_of(stacked());
     }
   }
 
