@@ -33,6 +33,7 @@ class ActingEffects {
       : step_(step), start_(time), follower_(position) {
     if (axis.elastic()) add_shaft(axis, step, position);
     for (const auto& parameters : effects_of<StructuralResonance>(axis)) add_resonance(parameters, axis, step);
+    for (const auto& parameters : effects_of<Backlash>(axis)) add_gap(parameters, axis, step, position);
     if (axis.gravity) {
       auto gravity = std::make_unique<Gravity>(axis, step);
       if (!effects_of<LoadDependentFriction>(axis).empty()) weight_ = gravity.get();
@@ -52,7 +53,6 @@ class ActingEffects {
             forces_.push_back({id->law.make_force(effect.values, carriage(axis), axis), id->law.is_friction});
     for (const machine::Effect& effect : axis.effects)
       if (auto law = given_force(effect)) forces_.push_back({std::make_unique<FunctionForce>(std::move(law)), false});
-    for (const auto& parameters : effects_of<Backlash>(axis)) play_.emplace(parameters, position);
     for (const auto& parameters : effects_of<EncoderSubdivisionError>(axis)) reading_.emplace_back(parameters);
   }
 
@@ -197,6 +197,14 @@ class ActingEffects {
     }
     mode_.emplace(spring, step);
     motor_on_carriage_ = mode.motor_measured;
+  }
+  void add_gap(const Backlash::Parameters& parameters, const machine::AxisModel& axis, double step, double position) {
+    if (parameters.mass_ratio == 0.0) {
+      play_.emplace(parameters, position);
+      return;
+    }
+    const auto [behind, in_front, stiffness, damping] = Backlash::contact(parameters, axis.mass);
+    mode_.emplace(Shaft{behind, in_front, stiffness, damping, parameters.width}, step);
   }
   bool motor_apart() const { return mode_ && !motor_on_carriage_; }
 

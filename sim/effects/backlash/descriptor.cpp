@@ -1,7 +1,19 @@
 #include "sim/effects/backlash/backlash.hpp"
 #include "sim/effects/describe.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
 
-namespace stiction::sim::effects {
+namespace stiction::sim {
+
+void Backlash::check_axis(const Parameters& p, const machine::AxisModel& axis) {
+  if (p.mass_ratio == 0.0) return;
+  if (axis.elastic())
+    throw EffectError(name, "mass_ratio on an axis with transmission.stiffness", "the gap as transmission.backlash");
+  if (!effects_of<StructuralResonance>(axis).empty())
+    throw EffectError(name, "mass_ratio on an axis with structural_resonance", "one of them: the plant has two masses");
+}
+
+namespace effects {
 
 EffectDescriptor backlash() {
   return described<Backlash>({
@@ -23,4 +35,5 @@ EffectDescriptor backlash() {
   });
 }
 
-}  // namespace stiction::sim::effects
+}  // namespace effects
+}  // namespace stiction::sim

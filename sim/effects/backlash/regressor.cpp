@@ -11,6 +11,8 @@
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "sim/effects/backlash/backlash.hpp"
 #include "sim/effects/effect_values.hpp"
+#include "sim/effects/effects.hpp"
+#include "sim/effects/structural_resonance/structural_resonance.hpp"
 
 namespace stiction::host::effects::backlash {
 namespace {
@@ -61,6 +63,50 @@ void describe(const SearchContext& context, double, const Eigen::VectorXd& w, co
   add_key(context, finding, "width", {w[0]}, {std::sqrt(c(0, 0))});
 }
 
+// In front of a heavy body, which has the friction: while the motor crosses the gap nothing drives the slide, which
+// sticks or slows down, and the drive waits for it. What shows is the motor's acceleration against it, of the share of
+// the mass that is in front.
+namespace heavy {
+
+// Of drives whose motor is matched to its load; columns hardly tell the shares apart.
+constexpr double usual_ratio = 0.5, ratio_error = 0.2;
+constexpr double narrow = 3e-6, wide = 24e-6;  // m
+// What two runs have in common: of one alone, whose motor crosses at instants of its own, a gap came out a third as
+// wide.
+constexpr std::size_t runs = 2;
+
+sim::Backlash::Parameters gap(double width) { return {.width = std::abs(width), .mass_ratio = usual_ratio}; }
+
+std::vector<double> grid(const SearchContext& context) {
+  if (!context.response || context.axis.elastic()) return {};
+  if (!sim::effects_of<sim::StructuralResonance>(context.axis).empty()) return {};
+  const double scale = scale_of(context.axis);
+  return {scale * narrow, scale * wide};
+}
+Columns columns(const SearchContext& context, const Motion& motion, double width) {
+  auto column = context.response(motion, sim::effect_of<sim::Backlash>(gap(width)), runs);
+  // Contacts alone leave a force, too; it is no gap's.
+  const auto closed = context.response(motion, sim::effect_of<sim::Backlash>(gap(0.0)), runs);
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = (column[i] - closed[i]) / std::abs(width);
+  return {column};
+}
+void describe(const SearchContext& context, double, const Eigen::VectorXd& w, const Eigen::MatrixXd& c,
+              Finding& finding) {
+  // The force is that of the share in front: the width is known no better than this.
+  add_key(context, finding, "width", {w[0]},
+          {std::hypot(std::sqrt(c(0, 0)), w[0] * ratio_error / (1.0 - usual_ratio))});
+  add_key(context, finding, "mass_ratio", {usual_ratio}, {ratio_error});
+}
+const Candidate force{.grid = grid,
+                      .columns = columns,
+                      .possible = possible,
+                      .describe = describe,
+                      .at_weight = true,
+                      .replays = true,
+                      .coarse = coarse,
+                      .trials = 2.0};
+
+}  // namespace heavy
 }  // namespace
 
 extern const EffectRegressor regressor{.force = {.grid = grid,
@@ -69,6 +115,7 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .describe = describe,
                                                  .at_weight = true,
                                                  .replays = true,
-                                                 .coarse = coarse}};
+                                                 .coarse = coarse},
+                                       .other_forces = {&heavy::force, 1}};
 
 }  // namespace stiction::host::effects::backlash

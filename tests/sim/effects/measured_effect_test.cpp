@@ -51,6 +51,47 @@ TEST(Backlash, TheCarriageItselfFeelsNothingOfIt) {
   }
 }
 
+// In front of a heavy body the motor is free until its contact closes: x = F t^2 / 2 (1 - r) M from the middle of the
+// gap on, which takes 7.1 ms here. Contacts are forces between the two, so that all of the push is in both momenta.
+TEST(Backlash, AMotorIsFreeInAGapInFrontOfAHeavyBodyAndThenTheTwoShareItsPush) {
+  constexpr double width = 100e-6, ratio = 0.8, force = 10.0;
+  auto axis = with_effects({{"backlash", {{"width", {width}}, {"mass_ratio", {ratio}}, {"frequency", {300.0}}}}});
+  set_parameters<Classical<>>(axis.friction, {0.0, 1.0, 0.0});
+  AxisPlant plant(timing, axis, 0.1, 1);
+  const double in_front = (1.0 - ratio) * axis.mass, closes = std::sqrt(width * in_front / force);
+  int ticks = 0;
+  const auto push = [&] {
+    plant.command({force / axis.motor.force_constant, 0.0, 0.0}, true);
+    plant.advance_tick();
+    ++ticks;
+  };
+  while ((ticks + 1) * tick < closes) {
+    push();
+    const double t = ticks * tick;
+    ASSERT_EQ(plant.position(), 0.1);
+    ASSERT_NEAR(plant.motor_position() - 0.1, 0.5 * force / in_front * t * t, 1e-9);
+  }
+  EXPECT_GT(ticks, 100);
+  const double before = plant.motor_position();
+  while (ticks < 4000) push();
+  EXPECT_GT(plant.position(), 0.1);
+  // Pushed together: ahead by half a width and what the force bends the contact.
+  EXPECT_NEAR(plant.motor_position() - plant.position(), 0.5 * width, 2e-6);
+  EXPECT_NEAR(plant.velocity(), force * ticks * tick / axis.mass, 1e-6);
+  EXPECT_GT(plant.motor_position(), before);
+}
+
+TEST(Backlash, OfAHeavyBodyIsRefusedWhereTheAxisHasAShaftOrAMode) {
+  const machine::Effect gap{"backlash", {{"width", {1e-6}}, {"mass_ratio", {0.5}}}};
+  const machine::Effect mode{"structural_resonance",
+                             {{"frequency", {200.0}}, {"damping_ratio", {0.1}}, {"mass_ratio", {0.5}}}};
+  EXPECT_THROW(AxisPlant(timing, with_effects({gap, mode}), 0.0, 1), EffectError);
+  auto shaft = with_effects({gap});
+  shaft.transmission.emplace().stiffness = 1e7;
+  shaft.motor_mass = 10.0;
+  EXPECT_THROW(AxisPlant(timing, shaft, 0.0, 1), EffectError);
+}
+
 // Ticks until a force of 10 N/V, commanded at the first tick, has moved a free carriage as far as it would have from
 // the end of the delay on: x = F (t - d)^2 / 2 m.
 double delay_seen(double dead_time, double loop_delay) {
