@@ -294,8 +294,10 @@ std::optional<Verdict> diagnose_faster(const DiagnoseInput& input) {
 
 Verdict diagnose(const DiagnoseInput& input) {
   auto verdict = *diagnose_in(RowBand::usual, input);
-  const bool named = std::any_of(verdict.findings.begin(), verdict.findings.end(),
-                                 [](const Finding& finding) { return finding.names_cause(); });
+  // A gain of the drive makes no force: it is no reason why forces should not agree.
+  const bool named = std::any_of(verdict.findings.begin(), verdict.findings.end(), [](const Finding& finding) {
+    return finding.names_cause() && finding.residual != Residual::command;
+  });
   if (named || !verdict.agreement || verdict.agreement->status != Status::does_not_agree) return verdict;
   return diagnose_faster(input).value_or(std::move(verdict));
 }
