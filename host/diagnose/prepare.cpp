@@ -25,6 +25,31 @@ namespace {
 
 constexpr double shortest = 3.0;  // s, of the training logs together
 
+template <class T>
+std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
+  first.insert(first.end(), second.begin(), second.end());
+  return first;
+}
+
+// By the clocks of the records; where one begins anew, without pauses between them, the held-out ones behind the
+// others. None of a single record, or of such that are not known by a source of their own.
+Session session_of(const std::vector<Log>& training, const std::vector<Log>& held_out) {
+  if (training.size() < 2 || held_out.empty()) return {};
+  const auto logs = joined(training, held_out);
+  const bool goes_on =
+      std::is_sorted(logs.begin(), logs.end(), [](const Log& a, const Log& b) { return a.t.front() < b.t.back(); });
+  Session session;
+  double now = 0.0;
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const auto& t = logs[k].t;
+    if (goes_on) now = t.front() - logs.front().t.front();
+    if (!session.begins.emplace(logs[k].source, now).second) return {};
+    now += t.back() - t.front();
+    if (k + 1 == training.size()) session.end = now;
+  }
+  return session;
+}
+
 SearchContext context_of(const machine::AxisModel& axis, const LogRows& rows, const SignalSettings& settings) {
   SearchContext context;
   context.axis = axis;
@@ -151,12 +176,6 @@ void take_friction(Prepared& prepared) {
   }
 }
 
-template <class T>
-std::vector<T> joined(std::vector<T> first, const std::vector<T>& second) {
-  first.insert(first.end(), second.begin(), second.end());
-  return first;
-}
-
 // Runs of the training logs and of those held out, as runs of all; as many as both have.
 std::vector<std::vector<Log>> joined_runs(const std::vector<std::vector<Log>>& training,
                                           const std::vector<std::vector<Log>>& held_out) {
@@ -229,6 +248,7 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, RowBand band, Verd
   prepared->settings = signals_in(band, joined(prepared->training.logs, prepared->held_out.logs));
   take_rows(*prepared, verdict);
   prepared->context = context_of(prepared->axis, prepared->training.rows, prepared->settings);
+  prepared->context.session = session_of(input.logs, input.held_out);
   prepared->context.timing = input.machine.timing;
   take_motion(*prepared, input, verdict);
   prepared->context.highest_residual = prepared->training.target.cwiseAbs().maxCoeff();

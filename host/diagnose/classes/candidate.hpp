@@ -7,9 +7,11 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "firmware/machine/model/machine.hpp"
@@ -30,6 +32,18 @@ struct Scans {
   PlaceScan tight_spots{}, pushes{};
 };
 
+// How records follow one another; empty (`end` is 0) where that is not known.
+struct Session {
+  std::map<std::string, double, std::less<>> begins;  // s, from the first one's, of records by their source
+  double end = 0.0;                                   // s, of the last training record
+
+  // s; the end for a record that is not known.
+  double begin_of(std::string_view source) const {
+    const auto found = begins.find(source);
+    return found == begins.end() ? end : found->second;
+  }
+};
+
 // What the candidates may know: the axis as its file has it and what the training records cover. SI units.
 struct SearchContext : Scans {
   machine::AxisModel axis;
@@ -43,7 +57,8 @@ struct SearchContext : Scans {
   bool force_is_current = false;  // in every record: current (or voltage) times the file's force constant
   bool other_axis = false;        // its motion is in every record
   double duration = 0.0;          // s, of the longest record
-  double log_period = 0.0;        // s, of the slowest record
+  Session session{};
+  double log_period = 0.0;  // s, of the slowest record
   // Whether what disturbs the axis is in the motion of the regressors: where that is measured, or learned from it.
   bool disturbed_motion = false;
   bool measured_motion = false;  // the loop's answer too, as late as it comes
@@ -92,7 +107,8 @@ struct Candidate {
   bool per_record = false;
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const SearchContext&) = nullptr;
-  bool replays = false;  // its columns cost a run of the closed loop
+  bool through_session = false;  // its clock goes on through all records, which that of no run does
+  bool replays = false;          // its columns cost a run of the closed loop
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
   double trials = 1.0;  // independent values that a grid without a scan tries

@@ -223,10 +223,10 @@ class ClosedLoopFit {
 
 }  // namespace
 
-// What runs in silence do not know: a phase of each record, or a response under disturbances.
+// What runs in silence do not know: a phase of each record, the session's clock, or a response under disturbances.
 bool described_by_runs(const Term& term) {
   const auto& candidate = candidates()[term.candidate];
-  return !candidate.outside() && !candidate.per_record && !candidate.replays;
+  return !candidate.outside() && !candidate.per_record && !candidate.through_session && !candidate.replays;
 }
 
 ClosedLoopRefinement refine_in_closed_loop(std::vector<Finding> findings, std::span<const Term> terms,

@@ -21,7 +21,8 @@ struct ClosedLoopRefinement {
   std::optional<std::size_t> response{};
 };
 
-// Not one whose phase differs from record to record, nor one that replays under disturbances.
+// Not one whose phase differs from record to record, or whose clock goes on through them, nor one that replays under
+// disturbances.
 bool described_by_runs(const Term& term);
 
 // `findings`: with start values and standard errors of their parameters; `terms`: theirs, in the same order;

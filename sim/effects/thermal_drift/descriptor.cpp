@@ -8,7 +8,7 @@ EffectDescriptor thermal_drift() {
   return described<ThermalDrift>({
       .order = 100,
       .title = "Friction that drifts as the machine warms up",
-      .meaning = "The level of friction changes from the start of the record on.",
+      .meaning = "The level of friction changes from the start of the record, or of the session, on.",
       .advice = "Warm up before precise work. Identify friction cold and warm and compare with the viscosity of the "
                 "lubricant.",
       .aliases = {},
