@@ -294,10 +294,8 @@ std::optional<Verdict> diagnose_faster(const DiagnoseInput& input) {
 
 Verdict diagnose(const DiagnoseInput& input) {
   auto verdict = *diagnose_in(RowBand::usual, input);
-  // A gain of the drive makes no force: it is no reason why forces should not agree.
-  const bool named = std::any_of(verdict.findings.begin(), verdict.findings.end(), [](const Finding& finding) {
-    return finding.names_cause() && finding.residual != Residual::command;
-  });
+  const bool named = std::any_of(verdict.findings.begin(), verdict.findings.end(),
+                                 [](const Finding& finding) { return finding.names_cause(); });
   if (named || !verdict.agreement || verdict.agreement->status != Status::does_not_agree) return verdict;
   return diagnose_faster(input).value_or(std::move(verdict));
 }
