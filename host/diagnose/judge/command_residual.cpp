@@ -36,6 +36,8 @@ constexpr int refinements = 2;
 // Of a gain: what the digits of a file and a drive's number formats leave open. On the EMPS record, whose command the
 // replay meets to 1 mV, 0.02 % of the velocity gain is significant, and without any effect.
 constexpr double least_change = 1e-3;
+// Times the file's: the range of a gain in which its slope says anything. What leaves it is something else.
+constexpr double smallest = 0.2, largest = 5.0;
 
 using Places = std::vector<std::size_t>;  // of command_parameters()
 
@@ -251,9 +253,8 @@ std::vector<CommandTerm> refined(const Commands& commands, const machine::AxisMo
   }
   for (int round = 0; round < refinements; ++round) {
     for (auto& term : terms) {
-      // A step may not leave the range in which the slope says anything.
       const double file = *command_parameters()[term.place].value(axis);
-      if (file > 0.0) term.value = std::clamp(term.value, 0.2 * file, 5.0 * file);
+      if (file > 0.0) term.value = std::clamp(term.value, smallest * file, largest * file);
       if (file == 0.0) term.value = std::max(term.value, 0.0);
     }
     const auto at = with_terms(axis, terms);
@@ -373,7 +374,8 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
     const double change = term.value - *p.value(axis);
     if (term.in_own_run / change > of_own_run) return true;
     if (p.is_delay) return change <= 0.0 || is_record_delay(delay, change);
-    return std::abs(change) < least_change * *p.value(axis);
+    const double ratio = term.value / *p.value(axis);
+    return std::abs(ratio - 1.0) < least_change || ratio < smallest || ratio > largest;
   });
 
   std::vector<Finding> findings;
@@ -385,10 +387,12 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
       findings.push_back(finding_of(file, *parameter.effect, terms));
   judge_held_out(verdict, findings, held, axis, terms, input.seed);
   for (auto& finding : findings) {
-    if (*finding.holdout.command_rms_ratio >= 1.0) {
+    if (const auto& [least, most] = finding.holdout.ci95; most >= 1.0) {
       verdict.rejected.push_back(
-          {finding.effect,
-           "withdrawn: found in the command residual of the training data, but without improvement on held-out data"});
+          {finding.effect, fmt::format("withdrawn: found in the command residual of the training data, but on held-out "
+                                       "data without a certain gain: {:.4g} times the residual without it, {:.4g} to "
+                                       "{:.4g} with 95 %",
+                                       *finding.holdout.command_rms_ratio, least, most)});
       continue;
     }
     finding.evidence = fmt::format(
