@@ -61,9 +61,10 @@ TEST(EffectsFile, AnUnknownNameListsTheNamesAndTheNearest) {
 }
 
 TEST(EffectsFile, WrongKeysAndValuesNameTheirPlace) {
-  EXPECT_EQ(error_of_effect("name = \"backlash\"\nwidht = \"2 um\"\n"),
-            "FILE:31: axis.B.effect[0].widht: found an unknown key; expected one of name, width, mass_ratio, frequency; did "
-            "you mean \"width\"?");
+  EXPECT_EQ(
+      error_of_effect("name = \"backlash\"\nwidht = \"2 um\"\n"),
+      "FILE:31: axis.B.effect[0].widht: found an unknown key; expected one of name, width, mass_ratio, frequency; did "
+      "you mean \"width\"?");
   EXPECT_EQ(
       error_of_effect("name = \"viscous_nonlinear\"\nforce = \"2 N\"\n"),
       "FILE:29: axis.B.effect[0].velocity: found no such key; expected a value greater than 0 m/s (speed at which "
