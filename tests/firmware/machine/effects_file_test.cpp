@@ -222,7 +222,8 @@ void expect_additions(const std::vector<Effect>& effects) {
   EXPECT_EQ(effects[0].values, additions[0].effects[0].values);
   EXPECT_EQ(effects[1].values.at("coulomb"), std::vector{1.5});
   EXPECT_EQ(effects[1].values.at("viscous"), std::vector{0.0});
-  EXPECT_EQ(effects[2].values, additions[0].effects[2].values);
+  EXPECT_EQ(effects[2].values.at("width"), std::vector{2.5e-6});
+  EXPECT_EQ(effects[2].values.at("mass_ratio"), std::vector{0.0});
 }
 
 TEST(ExtendedMachine, KeepsTheTextAndReadsBackWithTheEffects) {
