@@ -24,6 +24,7 @@ BY_CLASS = {
     "sim/plant/transmission_error.hpp": "it adds to the errors of the machine file's transmission",
     "sim/effects/backlash/descriptor.cpp": "the plant has two masses, for a gap or for an elastic mode",
     "sim/effects/backlash/regressor.cpp": "the same",
+    "sim/effects/structural_resonance/regressor.cpp": "the same",
     "host/diagnose/behind_master.cpp": "a late slave is simulated as late before its force is searched",
     "host/identify/identified_machine.cpp": "an identification writes friction that rises with a weight as it",
     "host/identify/refinement.cpp": "the fit has the constant force of the file as a parameter",

@@ -111,7 +111,8 @@ struct Candidate {
   bool replays = false;          // its columns cost a run of the closed loop
   // Whether it matters little at a value what disturbs those runs; null: at none.
   bool (*coarse)(const SearchContext&, double shape) = nullptr;
-  double trials = 1.0;  // independent values that a grid without a scan tries
+  double trials = 1.0;      // independent values that a grid without a scan tries
+  bool two_bodies = false;  // it makes two of the axis, which the plant does once
   // The places among which a local one is looked for, beside the grid (PlaceScan::value_of); null for others.
   const PlaceScan& (*places)(const SearchContext&) = nullptr;
   // Of a force outside of the vocabulary: what it looks like. It takes part in the search so that no name is forced

@@ -179,7 +179,9 @@ bool Dictionary::has(const ActiveSet& set, std::size_t candidate) {
     return std::count_if(set.begin(), set.end(), [&](const auto* o) { return o->candidate == candidate; }) >=
            most_waves;
   return std::any_of(set.begin(), set.end(), [&, alike = candidates()[candidate].looks_like](const auto* o) {
-    return one_cause(o->candidate, candidate) || (alike != nullptr && candidates()[o->candidate].looks_like == alike);
+    const bool both_split = candidates()[o->candidate].two_bodies && candidates()[candidate].two_bodies;
+    return one_cause(o->candidate, candidate) || both_split ||
+           (alike != nullptr && candidates()[o->candidate].looks_like == alike);
   });
 }
 

@@ -104,7 +104,8 @@ const Candidate force{.grid = grid,
                       .at_weight = true,
                       .replays = true,
                       .coarse = coarse,
-                      .trials = 2.0};
+                      .trials = 2.0,
+                      .two_bodies = true};
 
 }  // namespace heavy
 }  // namespace

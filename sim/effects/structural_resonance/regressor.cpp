@@ -10,6 +10,8 @@
 #include "host/diagnose/record/elastic_mode.hpp"
 #include "host/diagnose/record/inverse_dynamics.hpp"
 #include "host/diagnose/record/noise_floor.hpp"
+#include "sim/effects/backlash/backlash.hpp"
+#include "sim/effects/effects.hpp"
 
 namespace stiction::host::effects::structural_resonance {
 namespace {
@@ -29,7 +31,10 @@ double least_bend(const SearchContext& context) { return context.log_period * co
 double bend_of(double frequency) { return std::pow(2.0 * std::numbers::pi * frequency, -2.0); }
 
 std::vector<double> grid(const SearchContext& context) {
-  if (context.axis.elastic()) return {};  // the plant has one mode, that of the file's shaft
+  // The plant has one mode: that of the file's shaft, or of a gap between two bodies.
+  if (context.axis.elastic()) return {};
+  for (const auto& gap : sim::effects_of<sim::Backlash>(context.axis))
+    if (gap.mass_ratio > 0.0) return {};
   // A mode lives on the fastest motion, in which the loop answers what disturbs the axis; learned set-points lack it.
   if (context.disturbed_motion) return {};
   auto all = geometric(least_frequency, least_frequency * std::pow(step, steps - 1), steps);
@@ -104,7 +109,8 @@ struct Share {
                                    .possible = possible,
                                    .describe = describe,
                                    .like_dynamics = true,
-                                   .trials = 4.0 * 3};  // with the shares
+                                   .trials = 4.0 * 3,  // with the shares
+                                   .two_bodies = true};
 };
 const Candidate shares[] = {Share<25>::force, Share<50>::force, Share<75>::force};
 
@@ -116,7 +122,8 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .possible = before::possible,
                                                  .describe = before::describe,
                                                  .like_dynamics = true,
-                                                 .trials = 4.0},
+                                                 .trials = 4.0,
+                                                 .two_bodies = true},
                                        .other_forces = behind::shares};
 
 }  // namespace stiction::host::effects::structural_resonance
