@@ -261,7 +261,8 @@ std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
   double disturbed_position = 0.0;
   if (input.closed_loop) {
     const auto& rows = training.regressors;
-    const Disturbance disturbance(explained.found.residual.cwiseProduct(rows.counts()), rows.logs(), rows.period(0));
+    const auto left = records.on_axis.parts_of(explained.found.residual.cwiseProduct(rows.counts()));
+    const Disturbance disturbance(left.on_axis, rows.logs(), rows.period(0));
     disturbed_position = judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs, disturbance);
   }
   judge_agreement(verdict, records, explained, input.seed, disturbed_position);

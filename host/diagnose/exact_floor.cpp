@@ -15,7 +15,7 @@ constexpr std::size_t first_draw = 1000, draws = 12;
 
 // N, of the rows; empty where no exact machine can go the way of the record.
 Eigen::VectorXd exact_floor(const Prepared& prepared, const DiagnoseInput& input, const Record& record) {
-  const auto drawn = exact_records(prepared, input, record, record.target)(first_draw, first_draw + draws);
+  const auto drawn = exact_records(prepared, input, record, {record.target})(first_draw, first_draw + draws);
   if (drawn.empty()) return {};
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(record.target.size());
   for (const auto& each : drawn) sum += each.target;

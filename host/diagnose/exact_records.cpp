@@ -21,21 +21,22 @@ namespace {
 
 class Maker {
  public:
-  Maker(const Prepared& prepared, const DiagnoseInput& input, const Record& original, const Eigen::VectorXd& force)
+  Maker(const Prepared& prepared, const DiagnoseInput& input, const Record& original, const ForceOnAxis::Parts& noise)
       : prepared_(prepared),
         original_(original),
         machine_(input.machine),
         axis_(input.axis),
         beside_(original.logs, original.rows, prepared.axis, prepared.settings),
-        disturbance_(without_cycle_mean(force, rows(), original.logs, prepared.axis), original.regressors, rows().time,
-                     rows().period(0)),
+        disturbance_(redrawn(noise.on_axis)),
         driven_(with_recorded_set_points(input.machine.axes[input.axis], original_.logs, prepared.settings.cutoff)),
         own_motion_(!prepared.known_motion || !have_set_points(original_.logs, prepared.axis)) {
+    if (noise.in_record.size() > 0) in_record_ = redrawn(noise.in_record);
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
     if (own_motion_) return;
     own_ =
         mean_own_residual(runs_of_target(original_, machine_, axis_), original_.logs, prepared.axis, prepared.settings);
+    silent_ = rows_of(original_.simulated, prepared.axis, prepared.settings).velocity;
   }
 
   std::vector<ExactRecord> operator()(std::size_t begin, std::size_t end) const {
@@ -45,6 +46,7 @@ class Maker {
     std::vector<std::optional<ExactRecord>> made(runs.size());
     on_all_cores(runs.size(), [&](std::size_t k) {
       if (runs[k]) made[k] = measured(std::move(*runs[k]));
+      if (made[k]) made[k]->target += added_to_record(begin + k);
     });
     std::vector<ExactRecord> followed;
     for (auto& record : made)
@@ -54,6 +56,11 @@ class Maker {
 
  private:
   const LogRows& rows() const { return original_.rows; }
+
+  RedrawnResidual redrawn(const Eigen::VectorXd& noise) const {
+    return {without_cycle_mean(noise, rows(), original_.logs, prepared_.axis), original_.regressors, rows().time,
+            rows().period(0)};
+  }
 
   // The logs that are replayed under a draw of the forces.
   std::vector<Log> under_forces(std::size_t draw) const {
@@ -65,6 +72,20 @@ class Maker {
       std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
     }
     return logs;
+  }
+
+  // N, of the rows: what a record has in a draw beside its forces.
+  Eigen::VectorXd added_to_record(std::size_t draw) const {
+    Eigen::VectorXd added = Eigen::VectorXd::Zero(rows().rows());
+    const auto& logs = rows().logs();
+    for (std::size_t k = 0; in_record_ && k < logs.size(); ++k) {
+      const auto begin = static_cast<Eigen::Index>(logs[k]);
+      const std::size_t length = rows().end(k) - logs[k];
+      const auto drawn = in_record_->drawn(k, {rows().time.data() + begin, length}, ~(draw * logs.size() + k));
+      added.segment(begin, static_cast<Eigen::Index>(length)) =
+          Eigen::Map<const Eigen::VectorXd>(drawn.data(), static_cast<Eigen::Index>(length));
+    }
+    return added.cwiseProduct(original_.regressors.counts());
   }
 
   // What these `runs` are as a record; none where the machine cannot follow them once more.
@@ -81,7 +102,12 @@ class Maker {
       for (const auto* own : {&original_.of_exact_records, &original_.of_disturbance})
         if (own->size() > 0) record.target -= own->cwiseProduct(record.regressors.counts());
       ExactRecord made{std::move(record.target), std::nullopt};
-      if (own_motion_) made.regressors = std::move(record.regressors);
+      if (own_motion_) {
+        made.regressors = std::move(record.regressors);
+      } else {
+        for (const auto& motion : record.rows.motions()) made.read.push_back(motion.read);
+        made.speed = (record.rows.velocity - silent_).cwiseProduct(original_.regressors.counts());
+      }
       return made;
     } catch (const FaultTripped&) {
       return std::nullopt;
@@ -124,18 +150,42 @@ class Maker {
   std::size_t axis_;
   RecordsBesideRuns beside_;  // the original's
   RedrawnResidual disturbance_;
+  std::optional<RedrawnResidual> in_record_;
   std::vector<Log> driven_;  // with set-points
   bool own_motion_;          // whether each draw has regressors of its own
-  Eigen::VectorXd own_;      // N, of the rows, where the file's own run is the same in every draw
+  // Of the file's own run, in the rows, where that is the same in every draw.
+  Eigen::VectorXd own_;     // N, what the file leaves of it
+  Eigen::VectorXd silent_;  // m/s
 };
+
+constexpr std::size_t first_answer = 2000, answers = 2;  // draws of none that prices a name
+constexpr int rounds_of_answers = 2;  // an axis in a limit cycle answers to half a force by more than half
 
 }  // namespace
 
 ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
-                           const Eigen::VectorXd& force) {
-  return [maker = std::make_shared<Maker>(prepared, input, original, force)](std::size_t begin, std::size_t end) {
+                           const ForceOnAxis::Parts& noise) {
+  return [maker = std::make_shared<Maker>(prepared, input, original, noise)](std::size_t begin, std::size_t end) {
     return (*maker)(begin, end);
   };
+}
+
+ForceOnAxis force_on_axis(const Prepared& prepared, const DiagnoseInput& input) {
+  const auto& record = prepared.training;
+  if (prepared.context.disturbed_motion || !prepared.context.exact_records) return {};
+  const auto silent = rows_of(record.simulated, prepared.axis, prepared.settings).velocity;
+  ForceOnAxis force(record.target, (record.rows.velocity - silent).cwiseProduct(record.regressors.counts()),
+                    record.rows.logs());
+  const auto answered = [&] {
+    std::vector<ForceOnAxis::Answer> all;
+    const auto records = exact_records(prepared, input, record, {force.parts_of(record.target).on_axis});
+    for (auto& each : records(first_answer, first_answer + answers))
+      all.push_back({std::move(each.speed), std::move(each.target)});
+    return all;
+  };
+  for (int round = 0; round < rounds_of_answers; ++round) force.take_answers(answered());
+  force.take_remainders(answered());
+  return force;
 }
 
 }  // namespace stiction::host

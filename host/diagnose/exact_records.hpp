@@ -10,11 +10,15 @@
 namespace stiction::host {
 
 // `prepared`: with its training data; `input` of the diagnosis; `original`: those of `prepared` that are drawn again;
-// `force`: N, of their rows. Records without set-points are
-// followed anew in each draw, as those were, since the motion that they are followed by contains the answer of the loop
-// to the forces; with set-points the regressors are the record's. Where the record's are of its measured motion, so are
-// those of the draws.
+// `noise`: like which forces are drawn, and what adds to the record alone, N of their rows. Records without set-points
+// are followed anew in each draw, as those were, since the motion that they are followed by contains the answer of the
+// loop to the forces; with set-points the regressors are the record's. Where the record's are of its measured motion,
+// so are those of the draws.
 ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
-                           const Eigen::VectorXd& force);
+                           const ForceOnAxis::Parts& noise);
+
+// What of the residual force of the training records acted on the axis: exact machines move as much under it. All of
+// every force where their motion is not known. `prepared`, `input`: as above.
+ForceOnAxis force_on_axis(const Prepared& prepared, const DiagnoseInput& input);
 
 }  // namespace stiction::host

@@ -192,7 +192,7 @@ void take_exact_records(Prepared& prepared, const DiagnoseInput& input) {
   if (!follows && !without_set_points(prepared).empty()) return;
   if (!why_not_simulated(input.machine, input.axis, prepared.training.logs).empty()) return;
   prepared.context.exact_records = [&prepared, &input](const Eigen::VectorXd& force) {
-    return exact_records(prepared, input, prepared.training, force);
+    return exact_records(prepared, input, prepared.training, prepared.on_axis.parts_of(force));
   };
 }
 
@@ -205,7 +205,7 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   const auto disturbed_by = [&prepared, &input, logs, friction](const Eigen::VectorXd& force) {
     const auto& rows = prepared.training.rows;
     return EffectResponse(input.machine, input.axis, logs, prepared.settings, friction,
-                          Disturbance(force, rows.logs(), rows.period(0)));
+                          Disturbance(prepared.on_axis.parts_of(force).on_axis, rows.logs(), rows.period(0)));
   };
   for (const auto limit_cycle : {QuantizerLimitCycle::simulated, QuantizerLimitCycle::smoothed})
     prepared.responses.emplace_back(input.machine, input.axis, logs, prepared.settings, friction, limit_cycle);
@@ -216,8 +216,9 @@ void take_responses(Prepared& prepared, const DiagnoseInput& input) {
   // By the motor and on the parts of the encoder's increment that cancel with what the target is less.
   auto machine = input.machine;
   without_windings(machine.axes[input.axis]);
-  EffectResponse own(machine, input.axis, logs, prepared.settings, friction,
-                     Disturbance(training.target, training.rows.logs(), training.rows.period(0)));
+  EffectResponse own(
+      machine, input.axis, logs, prepared.settings, friction,
+      Disturbance(prepared.on_axis.parts_of(training.target).on_axis, training.rows.logs(), training.rows.period(0)));
   own.take_silence(
       joined_runs(runs_of_target(training, machine, input.axis), runs_of_target(held_out, machine, input.axis)));
   const auto of_disturbance = [&own](const Record& record) -> Eigen::VectorXd {
@@ -255,6 +256,7 @@ std::unique_ptr<Prepared> prepare(const DiagnoseInput& input, RowBand band, Verd
   prepared->context.resolved_force = resolution_of_dynamics * rms(prepared->training.expected);
   if (prepared->known_motion) take_friction(*prepared);
   take_exact_records(*prepared, input);
+  prepared->on_axis = force_on_axis(*prepared, input);
   if (prepared->context.disturbed_motion) take_exact_floor_off(*prepared, input);
   take_responses(*prepared, input);
   return prepared;

@@ -8,6 +8,7 @@
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/record/diagnose_input.hpp"
 #include "host/diagnose/record/effect_response.hpp"
+#include "host/diagnose/record/force_on_axis.hpp"
 #include "host/diagnose/record/record.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
@@ -18,6 +19,7 @@ struct Prepared {
   machine::AxisModel axis;
   SignalSettings settings;
   Record training, held_out;
+  ForceOnAxis on_axis;        // what of a residual force of the training records acted on the axis
   bool known_motion = false;  // whether regressors are of simulated motion
   SearchContext context;      // its `disturb` changes this context
   // Of all records, where they can be simulated: as they hunt, and smoothed.

@@ -109,6 +109,10 @@ void LogRows::read_as(const LogRows& measured) {
   for (std::size_t k = 0; k < motions_.size(); ++k) motions_[k].read = measured.motions_[k].read;
 }
 
+void LogRows::read_as(std::span<const std::vector<double>> read) {
+  for (std::size_t k = 0; k < motions_.size(); ++k) motions_[k].read = read[k];
+}
+
 Eigen::VectorXd LogRows::of_log(std::size_t log, const std::vector<double>& column) const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(force.size());
   const auto rows = filters_[log](weighed(motions_[log], column));

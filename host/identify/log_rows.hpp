@@ -34,6 +34,8 @@ class LogRows {
   std::vector<std::vector<double>> transposed(const Eigen::VectorXd& weights) const;
   // Motions of a simulation of the logs in `measured` read what those have read.
   void read_as(const LogRows& measured);
+  // They read this: m, at each sample of each.
+  void read_as(std::span<const std::vector<double>> read);
   // Leaves rows without weight: from now on force and regressors are zero where `counts` is 0 (one value a row, 0 or
   // 1).
   void weigh(Eigen::VectorXd counts);

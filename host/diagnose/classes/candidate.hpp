@@ -107,6 +107,7 @@ struct Candidate {
   bool per_record = false;
   // The lines among which a periodic one is looked for; null for others.
   const LineScan& (*scan)(const SearchContext&) = nullptr;
+  bool of_reading = false;       // it goes with what the encoder read, which the loop's answer to every force is in
   bool through_session = false;  // its clock goes on through all records, which that of no run does
   bool replays = false;          // its columns cost a run of the closed loop
   // Whether it matters little at a value what disturbs those runs; null: at none.

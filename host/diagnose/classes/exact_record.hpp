@@ -14,6 +14,9 @@ namespace stiction::host {
 struct ExactRecord {
   Eigen::VectorXd target;             // N, of the rows: what the file does not make of its force
   std::optional<LogRows> regressors;  // where they are not those of the record that it is like
+  // m, at each sample of each motion as the encoder had it, where the regressors are those of that record.
+  std::vector<std::vector<double>> read{};
+  Eigen::VectorXd speed{};  // m/s, of the rows, beyond that of the file's own run; empty where the way is not known
 };
 // Those of the draws from a first one to behind a last one that the machine can follow under the forces that were
 // drawn, in their order.

@@ -255,14 +255,14 @@ std::optional<Dictionary::Option> Dictionary::best_of(std::size_t candidate, con
 }
 
 // What is tried of a candidate in a record other than that of the search: the options that are there, or, where lines
-// and places are looked for in what is left or the motion is another one, trials of its own behind all columns.
-std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t candidate) {
+// and places are looked for in what is left or it goes along `other` rows, trials of its own behind all columns.
+std::vector<Atom> Dictionary::tried_in(const LogRows* other, std::size_t candidate) {
   const auto& of = candidates()[candidate];
   const bool scanned = of.scan != nullptr || of.places != nullptr;
   std::vector<Atom> tried;
   for (const auto& option : options_)
     if (option->candidate == candidate && !scanned) tried.push_back(*option);
-  if (!scanned && (!record.regressors || of.replays)) return tried;
+  if (!scanned && (other == nullptr || of.replays)) return tried;
   if (scanned)
     for (const double value : of.grid(scene_)) tried.push_back({candidate, value, {}, 0.0});
   if (of.places != nullptr)
@@ -270,7 +270,7 @@ std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t ca
       tried.push_back({candidate, PlaceScan::value_of(k), {}, 0.0});
   std::vector<CandidateAt> trials;
   for (const auto& atom : tried) trials.push_back({&of, atom.shape});
-  const auto groups = group_columns(record.regressors ? *record.regressors : rows_, scene_, trials);
+  const auto groups = group_columns(other != nullptr ? *other : rows_, scene_, trials);
   for (std::size_t k = 0; k < tried.size(); ++k) {
     tried[k].group = add_group(evidence_, groups[k]);
     tried[k].log_prior = log_prior_of(scene_, candidate, tried[k].shape);
@@ -278,19 +278,28 @@ std::vector<Atom> Dictionary::tried_in(const ExactRecord& record, std::size_t ca
   return tried;
 }
 
-std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::vector<std::size_t>& names) {
+std::vector<double> Dictionary::names_in(const ExactRecord& record, const std::vector<std::size_t>& names,
+                                         Weights allowed) {
   const Eigen::VectorXd own = evidence_.target();
   evidence_.retarget(record.target);
   const auto of_none = posterior({});
   const Scans scanned = scene_;
-  find_lines_of(names, record.regressors ? *record.regressors : rows_, record.target, evidence_.whitening(), scene_);
+  const auto of_reading = [](std::size_t name) { return candidates()[name].of_reading; };
+  std::optional<LogRows> reading;
+  if (!record.read.empty() && std::any_of(names.begin(), names.end(), of_reading)) {
+    reading = rows_;
+    reading->read_as(record.read);
+  }
+  const LogRows* other = record.regressors ? &*record.regressors : reading ? &*reading : nullptr;
+  find_lines_of(names, other != nullptr ? *other : rows_, record.target, evidence_.whitening(), scene_);
   std::vector<double> odds;
   for (const auto c : names) {
     odds.push_back(-std::numeric_limits<double>::infinity());
     const auto first = evidence_.columns();
-    for (const auto& atom : tried_in(record, c)) {
+    for (const auto& atom : tried_in(record.regressors || of_reading(c) ? other : nullptr, c)) {
       const auto gain = of_none.gain_of(atom.group);
-      if (gain.nats + atom.log_prior > odds.back() && possible(atom, {}, of_none, gain.size))
+      if (gain.nats + atom.log_prior > odds.back() &&
+          (allowed == Weights::all || possible(atom, {}, of_none, gain.size)))
         odds.back() = gain.nats + atom.log_prior;
     }
     evidence_.truncate(first);

@@ -58,8 +58,10 @@ class Dictionary {
   // is possible.
   std::optional<Option> best_of(std::size_t candidate, const ActiveSet& beside, const Posterior& of_beside) const;
   // Log odds of the best of each of the candidates `names`, as best_of() beside none, were this the `record`; minus
-  // infinity where none is possible. Lines and places are looked for in that record.
-  std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names);
+  // infinity where none is possible. Lines and places are looked for in that record. `allowed`: in a
+  // record like the search's own what cannot be by sign or size may count as well: one with more of it could say it.
+  enum class Weights { possible, all };
+  std::vector<double> names_in(const ExactRecord& record, const std::vector<std::size_t>& names, Weights allowed);
   // From now on without the logs number `part`, `part` + `parts`, ..., in whitened rows, by the noise that the set
   // leaves in the others; options and replays are those of all logs.
   void leave_out(const ActiveSet& set, std::size_t part, std::size_t parts);
@@ -88,7 +90,7 @@ class Dictionary {
   bool resolved(const Atom& atom, const Eigen::VectorXd& weights) const;
   std::optional<Option> at_shape(std::size_t candidate, double shape, const ActiveSet& beside,
                                  const Posterior& of_beside);
-  std::vector<Atom> tried_in(const ExactRecord& record, std::size_t candidate);
+  std::vector<Atom> tried_in(const LogRows* other, std::size_t candidate);
   Whitening noise_in(const Eigen::VectorXd& left) const;
   Eigen::VectorXd settled_residual(const ActiveSet& set) const;
   Eigen::VectorXd absorbed_by_all(const ActiveSet& set) const;

@@ -288,11 +288,14 @@ void Search::prune(ActiveSet& set) {
 // Without a name that the exact machine's records have too another may come out, which is looked at in turn. A name
 // that is worth more than what those say for it is there or something like it is: beside others it pays what they say
 // in the median, and has to be worth the rest where it is called a cause. Else it pays all, so that others may take its
-// place. Where the regressors move as the disturbed axis does a name can be what a disturbance does to them, so that
-// all of the target is taken for one: the rest beside that name has lost just this part, and beyond the price nothing
-// is to pay.
+// place. Where the regressors move, or read, as the disturbed axis does a name can be what a disturbance does to them,
+// so that all of the target is taken for one: the rest beside that name has lost just this part, and beyond the price
+// nothing is to pay.
 SearchResult Search::run_calibrated() {
   auto result = run();
+  const auto moves_as_disturbed = [&](std::size_t name) {
+    return scene_.disturbed_motion || candidates()[name].of_reading;
+  };
   std::optional<Calibration> calibration;
   std::set<std::size_t> known;
   while (scene_.exact_records) {
@@ -302,11 +305,12 @@ SearchResult Search::run_calibrated() {
       if (known.insert(atom->candidate).second) names.push_back(atom->candidate);
     if (names.empty()) break;
     if (!calibration) {
-      const auto& noise = scene_.disturbed_motion ? evidence_.target() : result.residual;
+      const bool moves = std::any_of(names.begin(), names.end(), moves_as_disturbed);
+      const auto& noise = moves ? evidence_.target() : result.residual;
       calibration.emplace(scene_, noise.cwiseProduct(counts_));
     }
-    const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names); };
-    const auto own = odds_in({evidence_.target(), {}});
+    const auto odds_in = [&](const ExactRecord& record) { return names_in(record, names, Weights::all); };
+    const auto own = names_in({evidence_.target(), {}}, names, Weights::possible);
     scene_.prices.resize(candidates().size(), 0.0);
     scene_.hurdles.resize(candidates().size(), 0.0);
     bool changed = false;
@@ -318,8 +322,9 @@ SearchResult Search::run_calibrated() {
     for (std::size_t k = 0; k < names.size(); ++k) {
       const auto [typical, limit] = prices[k];
       const bool beyond = own[k] - limit > sure;
-      scene_.prices[names[k]] = !beyond ? limit : scene_.disturbed_motion ? 0.0 : typical;
-      scene_.hurdles[names[k]] = beyond && !scene_.disturbed_motion ? limit - typical : 0.0;
+      const bool moves = moves_as_disturbed(names[k]);
+      scene_.prices[names[k]] = !beyond ? limit : moves ? 0.0 : typical;
+      scene_.hurdles[names[k]] = beyond && !moves ? limit - typical : 0.0;
       changed = changed || scene_.prices[names[k]] > 0.0 || scene_.hurdles[names[k]] > 0.0;
     }
     if (!changed) break;

@@ -29,6 +29,7 @@ extern const EffectRegressor regressor{.force = {.grid = grid,
                                                  .describe = describe,
                                                  .shape = true,
                                                  .periodic = true,
-                                                 .scan = scan}};
+                                                 .scan = scan,
+                                                 .of_reading = true}};
 
 }  // namespace stiction::host::effects::encoder_subdivision_error

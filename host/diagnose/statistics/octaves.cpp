@@ -1,0 +1,72 @@
+#include "host/diagnose/statistics/octaves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <unsupported/Eigen/FFT>
+
+namespace stiction::host {
+namespace {
+
+// The lowest octave has so many lines of the longest log, and what is below them, that a ratio of two powers is known
+// to a third.
+constexpr double lines_of_lowest = 20.0;
+
+std::size_t octave_of(Eigen::Index line, Eigen::Index lines, std::size_t count) {
+  const auto from_ends = static_cast<double>(std::min(line, lines - line));
+  const double down = std::log2(0.5 * static_cast<double>(lines) / std::max(from_ends, 0.5));
+  return std::min(static_cast<std::size_t>(std::max(down, 0.0)), count - 1);
+}
+
+// Calls `use` with the first row and the values of each log.
+template <class Use>
+void by_each_log(const Eigen::VectorXd& values, std::span<const std::size_t> logs, const Use& use) {
+  for (std::size_t k = 0; k < logs.size(); ++k) {
+    const auto begin = static_cast<Eigen::Index>(logs[k]);
+    const auto end = k + 1 < logs.size() ? static_cast<Eigen::Index>(logs[k + 1]) : values.size();
+    if (end > begin) use(begin, Eigen::VectorXd(values.segment(begin, end - begin)));
+  }
+}
+
+}  // namespace
+
+Octaves::Octaves(std::span<const std::size_t> logs, Eigen::Index rows) : logs_(logs.begin(), logs.end()) {
+  Eigen::Index longest = 0;
+  by_each_log(Eigen::VectorXd::Zero(rows), logs_,
+              [&](Eigen::Index, const Eigen::VectorXd& own) { longest = std::max(longest, own.size()); });
+  // Below an octave's lower end are as many lines as in it.
+  count_ = 1 + static_cast<std::size_t>(
+                   std::max(std::log2(std::max(0.5 * static_cast<double>(longest) / lines_of_lowest, 1.0)), 0.0));
+}
+
+Octaves::Powers Octaves::of(const Eigen::VectorXd& values) const {
+  Powers powers(count_, 0.0);
+  Eigen::FFT<double> fft;
+  by_each_log(values, logs_, [&](Eigen::Index, const Eigen::VectorXd& own) {
+    Eigen::VectorXcd spectrum;
+    fft.fwd(spectrum, own);
+    for (Eigen::Index i = 0; i < own.size(); ++i)
+      powers[octave_of(i, own.size(), count_)] += std::norm(spectrum[i]) / static_cast<double>(own.size());
+  });
+  return powers;
+}
+
+Eigen::VectorXd Octaves::scaled(const Eigen::VectorXd& values, const Powers& gains) const {
+  Eigen::VectorXd all = values;
+  by_each_log(values, logs_, [&](Eigen::Index begin, const Eigen::VectorXd& own) {
+    all.segment(begin, own.size()) = log_scaled(own, gains);
+  });
+  return all;
+}
+
+Eigen::VectorXd Octaves::log_scaled(const Eigen::VectorXd& values, const Powers& gains) const {
+  if (values.size() == 0) return values;
+  Eigen::FFT<double> fft;
+  Eigen::VectorXcd spectrum;
+  fft.fwd(spectrum, values);
+  for (Eigen::Index i = 0; i < values.size(); ++i) spectrum[i] *= gains[octave_of(i, values.size(), count_)];
+  Eigen::VectorXd scaled(values.size());
+  fft.inv(scaled, spectrum);
+  return scaled;
+}
+
+}  // namespace stiction::host
