@@ -10,7 +10,7 @@ namespace stiction::host {
 namespace {
 
 constexpr int golden_steps = 14;  // the last two values are 0.1 % of the range apart
-constexpr int settling_steps = 4;
+constexpr int settling_steps = 4, settling_halvings = 2;
 constexpr double settled = 0.01;  // of the weight
 
 class Refinement {
@@ -86,22 +86,32 @@ class Refinement {
     return at;
   }
 
-  // The place of the slope moves to the weight that the slope gives, for as long as that fits better.
+  // The place of the slope moves to the weight that the slope gives, for as long as that fits better; of one that
+  // replays, or part of the way there: far from its own size a loop answers otherwise, and the weight says little of
+  // it.
   void settle(std::size_t k) {
     Eigen::VectorXd weights = weights_of(stacked());
     double left = (white_target_ - stacked() * weights).squaredNorm();
     for (int i = 0; i < settling_steps; ++i) {
-      const double weight = weights[first_weight(k)];
-      if (weight == 0.0 || !std::isfinite(weight) || std::abs(weight - terms_[k].shape) < settled * std::abs(weight))
-        break;
-      const auto before = white_[k];
-      const double next = left_with(k, weight);
-      if (next > left) {
-        white_[k] = before;
-        break;
+      const double weight = weights[first_weight(k)], from = terms_[k].shape;
+      if (weight == 0.0 || !std::isfinite(weight) || std::abs(weight - from) < settled * std::abs(weight)) break;
+      double place = weight;
+      bool moved = false;
+      const int halvings_tried = candidate(k).replays ? settling_halvings : 0;
+      for (int half = 0; half <= halvings_tried && !moved; ++half, place = between(from, place)) {
+        const auto before = white_[k];
+        const double next = left_with(k, place);
+        moved = next <= left;
+        if (moved)
+          terms_[k].shape = place, left = next, weights = weights_of(stacked());
+        else
+          white_[k] = before;
       }
-      terms_[k].shape = weight, left = next, weights = weights_of(stacked());
+      if (!moved) break;
     }
+  }
+  static double between(double from, double to) {
+    return from * to > 0.0 ? std::copysign(std::sqrt(from * to), from) : 0.5 * (from + to);
   }
 
   // Golden section within a step of the grid to either side: in 1/pitch an eighth of 1/stroke, else a factor.
