@@ -52,21 +52,16 @@ Octaves::Powers Octaves::of(const Eigen::VectorXd& values) const {
 
 Eigen::VectorXd Octaves::scaled(const Eigen::VectorXd& values, const Powers& gains) const {
   Eigen::VectorXd all = values;
+  Eigen::FFT<double> fft;
   by_each_log(values, logs_, [&](Eigen::Index begin, const Eigen::VectorXd& own) {
-    all.segment(begin, own.size()) = log_scaled(own, gains);
+    Eigen::VectorXcd spectrum;
+    fft.fwd(spectrum, own);
+    for (Eigen::Index i = 0; i < own.size(); ++i) spectrum[i] *= gains[octave_of(i, own.size(), count_)];
+    Eigen::VectorXd scaled(own.size());
+    fft.inv(scaled, spectrum);
+    all.segment(begin, own.size()) = scaled;
   });
   return all;
-}
-
-Eigen::VectorXd Octaves::log_scaled(const Eigen::VectorXd& values, const Powers& gains) const {
-  if (values.size() == 0) return values;
-  Eigen::FFT<double> fft;
-  Eigen::VectorXcd spectrum;
-  fft.fwd(spectrum, values);
-  for (Eigen::Index i = 0; i < values.size(); ++i) spectrum[i] *= gains[octave_of(i, values.size(), count_)];
-  Eigen::VectorXd scaled(values.size());
-  fft.inv(scaled, spectrum);
-  return scaled;
 }
 
 }  // namespace stiction::host

@@ -21,8 +21,6 @@ class Octaves {
   Powers of(const Eigen::VectorXd& values) const;
   // The `values` with each octave times its gain.
   Eigen::VectorXd scaled(const Eigen::VectorXd& values, const Powers& gains) const;
-  // The same of the rows of one log alone.
-  Eigen::VectorXd log_scaled(const Eigen::VectorXd& values, const Powers& gains) const;
 
  private:
   std::vector<std::size_t> logs_;
