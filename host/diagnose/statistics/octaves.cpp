@@ -1,6 +1,7 @@
 #include "host/diagnose/statistics/octaves.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <unsupported/Eigen/FFT>
 
@@ -10,6 +11,20 @@ namespace {
 // The lowest octave has so many lines of the longest log, and what is below them, that a ratio of two powers is known
 // to a third.
 constexpr double lines_of_lowest = 20.0;
+
+// Rows of a log up to which the transform takes them as they are. It costs their number times its largest prime factor:
+// longer ones have zeros behind them, to a power of two.
+constexpr std::size_t longest_as_it_is = 8192;
+
+Eigen::VectorXcd spectrum_of(Eigen::FFT<double>& fft, const Eigen::VectorXd& values) {
+  const auto count = static_cast<std::size_t>(values.size());
+  Eigen::VectorXd padded =
+      Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count <= longest_as_it_is ? count : std::bit_ceil(count)));
+  padded.head(values.size()) = values;
+  Eigen::VectorXcd spectrum;
+  fft.fwd(spectrum, padded);
+  return spectrum;
+}
 
 std::size_t octave_of(Eigen::Index line, Eigen::Index lines, std::size_t count) {
   const auto from_ends = static_cast<double>(std::min(line, lines - line));
@@ -42,10 +57,10 @@ Octaves::Powers Octaves::of(const Eigen::VectorXd& values) const {
   Powers powers(count_, 0.0);
   Eigen::FFT<double> fft;
   by_each_log(values, logs_, [&](Eigen::Index, const Eigen::VectorXd& own) {
-    Eigen::VectorXcd spectrum;
-    fft.fwd(spectrum, own);
-    for (Eigen::Index i = 0; i < own.size(); ++i)
-      powers[octave_of(i, own.size(), count_)] += std::norm(spectrum[i]) / static_cast<double>(own.size());
+    const auto spectrum = spectrum_of(fft, own);
+    const auto lines = spectrum.size();
+    for (Eigen::Index i = 0; i < lines; ++i)
+      powers[octave_of(i, lines, count_)] += std::norm(spectrum[i]) / static_cast<double>(lines);
   });
   return powers;
 }
@@ -54,12 +69,12 @@ Eigen::VectorXd Octaves::scaled(const Eigen::VectorXd& values, const Powers& gai
   Eigen::VectorXd all = values;
   Eigen::FFT<double> fft;
   by_each_log(values, logs_, [&](Eigen::Index begin, const Eigen::VectorXd& own) {
-    Eigen::VectorXcd spectrum;
-    fft.fwd(spectrum, own);
-    for (Eigen::Index i = 0; i < own.size(); ++i) spectrum[i] *= gains[octave_of(i, own.size(), count_)];
-    Eigen::VectorXd scaled(own.size());
+    auto spectrum = spectrum_of(fft, own);
+    const auto lines = spectrum.size();
+    for (Eigen::Index i = 0; i < lines; ++i) spectrum[i] *= gains[octave_of(i, lines, count_)];
+    Eigen::VectorXd scaled(lines);
     fft.inv(scaled, spectrum);
-    all.segment(begin, own.size()) = scaled;
+    all.segment(begin, own.size()) = scaled.head(own.size());
   });
   return all;
 }

@@ -1,5 +1,5 @@
-// What of a residual force acted on an axis, told by how it moved; and forces drawn with the powers of a residual. The
-// axis is a low-pass of first order with an inertia in front of it, the forces autoregressions, both of textbooks.
+// What of a residual force acted on an axis, told by how it moved. The axis is a low-pass of first order, the forces
+// are autoregressions, both of textbooks.
 #include "host/diagnose/record/force_on_axis.hpp"
 
 #include <gtest/gtest.h>
@@ -118,6 +118,19 @@ TEST(Octaves, HoldTheSquareOfTheRowsAndEachItsOwn) {
   Octaves::Powers gains(octaves.count(), 1.0);
   gains[2] = 0.0;
   EXPECT_LT(octaves.scaled(wave, gains).squaredNorm(), 0.01 * wave.squaredNorm());
+}
+
+// A number of rows that is prime, and so long that it has zeros behind it.
+TEST(Octaves, HoldALongLogOfAnyLength) {
+  constexpr Eigen::Index prime = 19997;
+  const Eigen::VectorXd force = wandering(2.0, 0.9, 7).replicate(3, 1).topRows(prime);
+  const std::vector<std::size_t> one_log{0};
+  const Octaves octaves(one_log, prime);
+  double sum = 0.0;
+  for (const double power : octaves.of(force)) sum += power;
+  EXPECT_NEAR(sum, force.squaredNorm(), 1e-9 * force.squaredNorm());
+  const Octaves::Powers gains(octaves.count(), 0.5);
+  EXPECT_LT((octaves.scaled(force, gains) - 0.5 * force).cwiseAbs().maxCoeff(), 1e-9);
 }
 
 }  // namespace
