@@ -135,7 +135,7 @@ std::vector<StateChange> changes_between(const StateRows& training, const StateR
   const Eigen::VectorXd force =
       behind(training.left.cwiseProduct(training.rows.counts()), held_out.left.cwiseProduct(held_out.rows.counts()));
   const Eigen::VectorXd common = PivotedLeastSquares(columns).solve(force);
-  const Whitening whitening(force - columns * common, logs);
+  const Whitening whitening(force - columns * common, logs, Memory::of_spans);
   WhiteRows white{columns, whitening(force), logs, {}};
   for (Eigen::Index c = 0; c < count; ++c) white.columns.col(c) = whitening(columns.col(c));
   const Eigen::VectorXd velocity = behind(training.rows.velocity, held_out.rows.velocity);

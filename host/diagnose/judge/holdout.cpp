@@ -191,7 +191,7 @@ HeldOutFigures evaluate_held_out(const HeldOutData& data, std::span<const Term> 
   const Nuisances nuisances(rows, context, constant, coulomb);
   const Eigen::VectorXd baseline = nuisances.without(data.target), extended = nuisances.without(rest);
   HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};
-  const Whitening whitening(extended, rows);
+  const Whitening whitening(extended, rows, Memory::of_spans);
   const auto blocks = blocks_of_rows(rows);
   const auto held_out_amplitude = [&](const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
     const Eigen::VectorXd force = before - after;

@@ -56,7 +56,7 @@ Disturbance::Disturbance(const Eigen::VectorXd& residual, std::span<const std::s
   const auto quiet = quieter_half(residual, logs, period);
   if (square_of(residual) > bursts * square_of(quiet.residual)) noise = quiet;
   mean_square_ = square_of(noise.residual);
-  spectrum_ = Whitening(noise.residual, noise.begins);
+  spectrum_ = Whitening(noise.residual, noise.begins, Memory::of_spans);
   deviation_ = std::sqrt(spectrum_(noise.residual).squaredNorm() /
                          static_cast<double>(std::max<Eigen::Index>(counted(noise.residual), 1)));
 }

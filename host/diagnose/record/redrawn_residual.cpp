@@ -27,7 +27,7 @@ RedrawnResidual::RedrawnResidual(const Eigen::VectorXd& residual, const NoiseRow
     : first_(rows.logs.begin(), rows.logs.end()), period_(period) {
   const auto logs = rows.logs;
   const Eigen::VectorXd noise = about_means(residual, logs);
-  spectrum_ = Whitening(noise, rows);
+  spectrum_ = Whitening(noise, rows, Memory::of_spans);
   const Eigen::VectorXd white = spectrum_(noise);
   for (std::size_t k = 0; k < logs.size(); ++k) {
     const auto begin = static_cast<Eigen::Index>(logs[k]);

@@ -105,7 +105,9 @@ Eigen::VectorXd Dictionary::absorbed_by_all(const ActiveSet& set) const {
   return evidence_.residual(of_set.columns(), of_set.weights());
 }
 
-// Weights and noise tell each other: by the noise of a set that is not in it yet its weights are too small.
+// Weights and noise tell each other: by the noise of a set that is not in it yet its weights are too small. Where slow
+// noise hides what is slow they stay so, or fast rows alone tell weights that leave more of what is slow; so that they
+// are also begun from the least squares of the force as it is. The likelier end counts.
 Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
   Evidence own(evidence_.target(), evidence_.row_blocks());
   std::vector<Group> groups;
@@ -114,14 +116,26 @@ Eigen::VectorXd Dictionary::settled_residual(const ActiveSet& set) const {
     for (const auto column : atom->group.columns) columns.push_back(evidence_.column(column));
     groups.push_back(add_group(own, columns));
   }
-  Eigen::VectorXd left = residual(set);
-  for (int round = 0; round < settling_rounds; ++round) {
-    own.whiten(noise_in(left));
-    Posterior of_set(own, sizes_);
-    for (const auto& group : groups) of_set.add(group);
-    left = own.residual(of_set.columns(), of_set.weights());
-  }
-  return left;
+  struct Settled {
+    Eigen::VectorXd left;
+    double likelihood;
+  };
+  const auto settled_from = [&](Eigen::VectorXd left) -> Settled {
+    double price = 0.0;
+    for (int round = 0; round < settling_rounds; ++round) {
+      own.whiten(noise_in(left));
+      Posterior of_set(own, sizes_);
+      for (const auto& group : groups) of_set.add(group);
+      left = own.residual(of_set.columns(), of_set.weights());
+      price = of_set.price();
+    }
+    const double likelihood = noise_log_likelihood(left.cwiseProduct(counts_), rows_) + price;
+    return {std::move(left), likelihood};
+  };
+  const auto columns = columns_of(set);
+  auto by_noise = settled_from(residual(set));
+  auto as_it_is = settled_from(plain_.residual(columns, plain_.fit(columns).coefficients));
+  return as_it_is.likelihood > by_noise.likelihood ? as_it_is.left : by_noise.left;
 }
 
 // By the noise of the rows that count; those of a log that is left out weigh nothing, so that nothing is learned there.

@@ -29,9 +29,9 @@ void weigh(White& white, const Eigen::ArrayXd& of) {
   white.variance += of * variance;
 }
 
-White white_of(const Eigen::VectorXd& residual, const NoiseRows& rows) {
+White white_of(const Eigen::VectorXd& residual, const NoiseRows& rows, Memory memory) {
   const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(residual.size());
-  White white{Whitening(residual, rows), {}, (residual.array() != 0.0).cast<double>(), none, none};
+  White white{Whitening(residual, rows, memory), {}, (residual.array() != 0.0).cast<double>(), none, none};
   white.square = white.whitening(residual).array().square();
   if (white.whitening.at_rest().size() == 0) {
     weigh(white, none + 1.0);
@@ -45,13 +45,13 @@ White white_of(const Eigen::VectorXd& residual, const NoiseRows& rows) {
 }  // namespace
 
 Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows) {
-  auto white = white_of(residual, rows);
+  auto white = white_of(residual, rows, Memory::of_rows);
   white.whitening.weigh((white.weight / white.variance).sqrt());
   return white.whitening;
 }
 
 double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& rows) {
-  const auto white = white_of(residual, rows);
+  const auto white = white_of(residual, rows, Memory::of_spans);
   const Eigen::ArrayXd each =
       -0.5 * (freedom + 1.0) * (white.square / (freedom * white.variance)).log1p() - 0.5 * white.variance.log();
   return (white.counts * each).sum();
@@ -59,7 +59,7 @@ double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& ro
 
 double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& rows, const Whitening& known) {
   const Eigen::ArrayXd counts = (residual.array() != 0.0).cast<double>();
-  Eigen::ArrayXd white = Whitening(residual, rows)(residual).array();
+  Eigen::ArrayXd white = Whitening(residual, rows, Memory::of_spans)(residual).array();
   if (known.weight().size() > 0) white *= known.weight().array();
   return -0.5 * counts.sum() * std::log(std::max((white.square() * counts).sum(), 1e-300));
 }

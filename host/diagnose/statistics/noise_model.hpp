@@ -13,7 +13,8 @@ namespace stiction::host {
 // in `rows`, 0 in those that do not count.
 Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows);
 
-// The log likelihood of that noise, nats, but for a constant: what tells two residuals of the same rows apart.
+// The log likelihood of noise that may wander for seconds, nats, but for a constant: what tells two residuals of the
+// same rows apart.
 double noise_log_likelihood(const Eigen::VectorXd& residual, const NoiseRows& rows);
 // The same with rows that count as another noise has it, which `known` makes white: only the spectrum is the residual's
 // own. `residual` and `rows`: as above.

@@ -2,6 +2,7 @@
 // its spectrum is another one than that of the axis in motion.
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -19,5 +20,10 @@ struct NoiseRows {
   std::span<const std::size_t> logs;  // first row of each
   std::span<const double> at_rest;    // 1 for a row at rest, else 0; empty: all rows are alike
 };
+
+// Behind the last row of log number `log`. `logs`: first row of each; `rows`: of all.
+inline std::size_t end_of(std::span<const std::size_t> logs, std::size_t log, Eigen::Index rows) {
+  return log + 1 < logs.size() ? logs[log + 1] : static_cast<std::size_t>(rows);
+}
 
 }  // namespace stiction::host

@@ -1,16 +1,15 @@
-// What makes a coloured residual white: the prediction errors of an autoregressive model of it (Yule-Walker equations,
-// solved by Levinson and Durbin). Least squares on whitened rows weighs each frequency by how little noise it carries,
-// so that a push of milliseconds is not drowned by a force that wanders for seconds (Aitken 1936; Cochrane, Orcutt
-// 1949).
+// What makes a coloured residual white: the prediction errors of an autoregressive model of it. Least squares on
+// whitened rows weighs each frequency by how little noise it carries, so that a push of milliseconds is not drowned by
+// a force that wanders for seconds (Aitken 1936; Cochrane, Orcutt 1949).
 #pragma once
 
 #include <Eigen/Dense>
-#include <complex>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "host/diagnose/statistics/noise_rows.hpp"
+#include "host/diagnose/statistics/predictor.hpp"
 
 namespace stiction::host {
 
@@ -19,7 +18,9 @@ class Whitening {
   // Leaves everything as it is.
   Whitening() = default;
   // Of a residual in `rows`: those at rest have a spectrum of their own, where they and the others are many.
-  Whitening(const Eigen::VectorXd& residual, const NoiseRows& rows);
+  // `memory`: of its autoregression. Of spans it holds what wanders for seconds; by that noise a search finds little of
+  // what its columns describe badly.
+  Whitening(const Eigen::VectorXd& residual, const NoiseRows& rows, Memory memory = Memory::of_rows);
 
   // Each white row counts as many times as `weight` says from now on: the inverse of the noise's deviation there.
   void weigh(Eigen::VectorXd weight) { weight_ = std::move(weight); }
@@ -37,7 +38,7 @@ class Whitening {
   // of them, where they are those of a record.
   Eigen::VectorXd coloured(const Eigen::VectorXd& white, std::size_t first = 0) const;
   // Square of the gain at `cycles` a row, of rows in motion.
-  double gain_square(double cycles) const;
+  double gain_square(double cycles) const { return in_motion_.gain_square(cycles); }
   // The same noise in rows of other logs at the same rate, all in motion, none of them weighed.
   Whitening over(std::span<const std::size_t> logs) const {
     auto other = *this;
@@ -48,9 +49,6 @@ class Whitening {
   }
 
  private:
-  using Predictor = std::vector<double>;  // of a row from those before it
-
-  static Predictor predictor_of(const Eigen::VectorXd& residual, std::span<const std::size_t> logs);
   // Without weights. `predictor`: of all rows.
   Eigen::VectorXd whitened(const Eigen::VectorXd& column, const Predictor& predictor) const;
   Eigen::VectorXd transposed(const Eigen::VectorXd& column, const Predictor& predictor) const;
