@@ -22,6 +22,7 @@ constexpr std::size_t most_rounds = 40;
 constexpr std::size_t refined_each = 5;  // of the best options, before one of them is taken
 constexpr std::size_t paired = 10;       // of the best options, where none is worth its price alone
 constexpr double better = 0.5;           // nats: less is no reason to move
+constexpr std::size_t most_instead = 4;  // names for a term without one: a wave has as many harmonics
 constexpr std::size_t most_parts = 8;    // of the logs, each of which is left out once
 constexpr double telling = 20.0;         // odds that exclude a name in the place of another
 constexpr double least_probability = 1.0 / (1.0 + telling);
@@ -61,6 +62,7 @@ class Search : private Dictionary {
   bool grow_by_pair(ActiveSet& set, const std::vector<Option>& options);
   bool move_one(ActiveSet& set);
   bool merge(ActiveSet& set);
+  bool name_instead(ActiveSet& set, const ActiveSet& known);
   void improve(ActiveSet& set);
   struct Worth {  // nats
     double by_one_noise, by_own_spectrum;
@@ -190,6 +192,35 @@ bool Search::merge(ActiveSet& set) {
   return false;
 }
 
+// Names for a term that has none: what each of them explains less well, some may explain better together, as harmonics
+// of a wave do. What the term has hidden is looked for first.
+bool Search::name_instead(ActiveSet& set, const ActiveSet& known) {
+  auto kept = known;
+  kept.insert(kept.end(), set.begin(), set.end());
+  for (std::size_t k = 0; k < set.size(); ++k) {
+    if (!candidates()[set[k]->candidate].outside()) continue;
+    const double now = score(set);
+    auto named = without(set, k);
+    bool scanned = false;
+    for (std::size_t names = 0; names < most_instead; ++names) {
+      if (!scanned) scan_lines(named, kept);
+      const auto of_named = posterior(named);
+      auto options = options_beside(named, of_named);
+      std::erase_if(options, [](const Option& option) { return candidates()[option.atom->candidate].outside(); });
+      // As much as the first of them explains the others hardly do.
+      const auto left = static_cast<double>(most_instead - names);
+      if (options.empty() || score(named) + left * options.front().score <= now + better) break;
+      scanned = !candidates()[options.front().atom->candidate].periodic;
+      named.push_back(refined(options.front(), named, of_named).atom);
+      kept.push_back(named.back());
+      if (score(named) <= now + better) continue;
+      set = std::move(named);
+      return true;
+    }
+  }
+  return false;
+}
+
 void Search::improve(ActiveSet& set) {
   for (std::size_t round = 0; round < most_rounds; ++round)
     if (!move_one(set) && !merge(set)) return;
@@ -255,6 +286,11 @@ Dictionary::ActiveSet Search::searched_from(bool absorbed, const ActiveSet& know
     whiten(set, false);
     scan_lines(set, known);
   }
+  for (std::size_t round = 0; round < most_rounds && name_instead(set, known); ++round) {
+    improve(set);
+    whiten(set, false);
+  }
+  scan_lines(set, known);
   // What stays is judged by the noise that it leaves.
   improve(set);
   whiten(set, false);

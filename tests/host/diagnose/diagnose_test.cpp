@@ -135,6 +135,18 @@ TEST_P(EachEffect, is_found_with_its_parameters) {
 INSTANTIATE_TEST_SUITE_P(Diagnosis, EachEffect, ::testing::Range<std::size_t>(0, cases().size()),
                          [](const auto& each) { return std::string(cases()[each.param].effect); });
 
+// As a profile without a name one term describes what takes two ripples.
+TEST(Diagnosis, names_a_ripple_that_has_harmonics) {
+  const auto wave = [](const Point& p) {
+    const double turn = 2.0 * std::numbers::pi * p.x / 0.09;
+    return 7.0 * std::cos(turn) + 5.0 * std::sin(2.0 * turn);
+  };
+  const auto verdict = verdict_of({.force = wave}, 7);
+  ASSERT_EQ(names_of(verdict), "force_ripple force_ripple") << rejections_of(verdict);
+  EXPECT_NEAR(value_of(verdict, "pitch"), 0.09, 0.02 * 0.09);
+  EXPECT_NEAR(verdict.findings.back().values.at("pitch").front(), 0.045, 0.02 * 0.045);
+}
+
 // Trajectory 0 runs from 0 to 0.25 m: in its middle friction is 24 N higher, falling to nothing at both ends.
 TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
   const auto tent = [](double x) { return std::max(24.0 - 192.0 * std::abs(x - 0.125), 0.0); };
