@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "host/diagnose/record/cycle_mean.hpp"
+#include "host/diagnose/record/encoder_noise.hpp"
 #include "host/diagnose/record/followed_set_points.hpp"
 #include "host/diagnose/record/held_still.hpp"
 #include "host/diagnose/record/record_rows.hpp"
@@ -33,6 +34,8 @@ class Maker {
     if (noise.in_record.size() > 0) in_record_ = redrawn(noise.in_record);
     // What the file leaves of its own run is told by the motor that the draws have.
     without_windings(machine_.axes[axis_]);
+    if (const auto noise = encoder_noise(original.logs, original.simulated, machine_.axes[axis_]))
+      machine_.axes[axis_].encoder.noise = *noise;
     if (own_motion_) return;
     own_ =
         mean_own_residual(runs_of_target(original_, machine_, axis_), original_.logs, prepared.axis, prepared.settings);
@@ -42,7 +45,9 @@ class Maker {
   std::vector<ExactRecord> operator()(std::size_t begin, std::size_t end) const {
     std::vector<std::vector<Log>> forced;
     for (std::size_t draw = begin; draw < end; ++draw) forced.push_back(under_forces(draw));
-    auto runs = replays_together(machine_of_axis(machine_, axis_), forced);
+    auto machine = machine_of_axis(machine_, axis_);
+    machine.axes.front().encoder.noise_draw = begin * rows().logs().size();
+    auto runs = replays_together(machine, forced);
     std::vector<std::optional<ExactRecord>> made(runs.size());
     on_all_cores(runs.size(), [&](std::size_t k) {
       if (runs[k]) made[k] = measured(std::move(*runs[k]));

@@ -47,7 +47,7 @@ AxisPlant::State::State(double step, int steps, const machine::AxisModel& axis, 
       encoder_increment(axis.encoder.increment),
       increments_per_metre(1.0 / axis.encoder.increment),
       encoder_noise(axis.encoder.noise),
-      random(seed),
+      random(seed + axis.encoder.noise_draw),
       position(start),
       phases(axis.motor.model == machine::MotorModel::synchronous ? 3 : 1) {}
 

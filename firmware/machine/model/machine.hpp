@@ -3,6 +3,7 @@
 // is machine_file.hpp.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -94,6 +95,7 @@ struct EncoderParameters {
   // rad, electrical: the true angle of a three-phase motor where the encoder shows zero. Of the plant alone: the drive
   // has an offset that was stored or that it finds (drive_setup.hpp).
   double commutation_offset = 0.0;
+  std::uint64_t noise_draw = 0;  // which of its noises; of the plant alone
 };
 
 struct PositionControllerParameters {

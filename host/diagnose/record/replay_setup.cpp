@@ -97,6 +97,14 @@ std::vector<std::optional<std::vector<Log>>> replays_together(const machine::Mac
   std::vector<ReplayOf> which;
   for (const auto& logs : records)
     for (const auto& log : logs) which.push_back({&machine, &log});
+  std::vector<machine::Machine> noisy;
+  if (machine.axes.front().encoder.noise > 0.0) {
+    noisy.assign(which.size(), machine);
+    for (std::size_t k = 0; k < noisy.size(); ++k) {
+      noisy[k].axes.front().encoder.noise_draw += k;
+      which[k].machine = &noisy[k];
+    }
+  }
   auto replayed = replay_together(which);
   std::vector<std::optional<std::vector<Log>>> all;
   auto next = replayed.begin();

@@ -38,7 +38,8 @@ machine::Machine machine_of_axis(const machine::Machine& machine, std::size_t ax
 // What the bench's axis makes of each log's set-points. Throws FaultTripped, LogError.
 std::vector<Log> replays(const ReplaySetup& setup);
 // The same of the logs of many records at once, in double precision where the axis has it (replay_together.hpp);
-// nothing of a record that the `machine`, of one axis, cannot follow. Throws LogError.
+// nothing of a record that the `machine`, of one axis, cannot follow. Each log has a noise of the encoder to itself,
+// those after the machine's. Throws LogError.
 std::vector<std::optional<std::vector<Log>>> replays_together(const machine::Machine& machine,
                                                               std::span<const std::vector<Log>> records);
 // Its position alone (m), at the log's samples.

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "host/diagnose/prepare.hpp"
+#include "host/diagnose/record/encoder_noise.hpp"
 #include "host/simulate/commissioning.hpp"
 #include "sim/machine_file.hpp"
 
@@ -21,15 +22,17 @@ constexpr double guide = 3.2;            // N rms: 2.5 below 3 Hz and 2 below 40
 
 class ExactRecords : public testing::Test {
  protected:
-  // With white noise of the current, A rms.
-  void prepare_with(double noise) {
+  // With white noise of the current, A rms, and one of the encoder, m rms, of which the file says 2 nm.
+  void prepare_with(double noise, double of_encoder = 2e-9) {
     input_.machine = sim::read_machine(
         std::string(STICTION_SOURCE_DIR) + "/firmware/machine/shipped/mcfv5050ln.toml",
         {{},
          {"axis.X.encoder.velocity=estimated", "axis.X.encoder.noise=2 nm", "axis.X.motor.force_constant=94.2 N/A"}});
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal(0.0, noise);
-    for (auto& record : host::record_commissioning(input_.machine, 0, 1)) {
+    auto machine = input_.machine;
+    machine.axes.front().encoder.noise = of_encoder;
+    for (auto& record : host::record_commissioning(machine, 0, 1)) {
       for (double& i : record.log.axes.front().i) i += normal(random);
       (record.held_out ? input_.held_out : input_.logs).push_back(std::move(record.log));
     }
@@ -57,6 +60,21 @@ TEST_F(ExactRecords, AreUnderTheForcesThatMovedTheAxis) {
   const auto draws = prepared_->context.exact_records(target)(0, 4);
   ASSERT_EQ(draws.size(), 4U);
   for (const auto& draw : draws) EXPECT_NEAR(deviation(draw.target), deviation(target), 0.25 * deviation(target));
+}
+
+// The file knows of little: they have as much as the record, another one in each draw.
+TEST_F(ExactRecords, HaveTheNoiseOfTheRecordsEncoder) {
+  constexpr double of_encoder = 60e-9;
+  prepare_with(0.0, of_encoder);
+  const auto& training = prepared_->training;
+  const auto found = host::encoder_noise(training.logs, training.simulated, prepared_->axis);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, of_encoder, 0.05 * of_encoder);
+  const auto draws = prepared_->context.exact_records(Eigen::VectorXd::Zero(training.target.size()))(0, 2);
+  ASSERT_EQ(draws.size(), 2U);
+  const double shared = draws[0].target.dot(draws[1].target) / (draws[0].target.norm() * draws[1].target.norm());
+  EXPECT_GT(deviation(draws[0].target), 0.0);
+  EXPECT_LT(shared, 0.5);
 }
 
 TEST_F(ExactRecords, HaveReadWhereTheyWere) {
