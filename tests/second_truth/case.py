@@ -19,6 +19,7 @@ from records import late, record
 
 KINDS = ("exact", "tolerance", "single", "pair", "triple", "unknown", "tight_spot")
 COUNT = {"single": 1, "pair": 2, "triple": 3}
+FURTHER = 3  # noisy nulls beside the case's own, from which its oracle knows what noise.py does not give in closed form
 
 
 class Unreachable(Exception):
@@ -43,8 +44,8 @@ class Case:
 
     def __init__(self, kind, seed, wishes, cam=False):
         self.kind, self.seed = kind, seed
-        streams = [np.random.default_rng([seed, KINDS.index(kind), k]) for k in range(5)]
-        self.rng_machine, self.rng_motion, self.rng_noise, self.rng_cause, self.rng_sensor = streams
+        streams = [np.random.default_rng([seed, KINDS.index(kind), k]) for k in range(6)]
+        self.rng_machine, self.rng_motion, self.rng_noise, self.rng_cause, self.rng_sensor, self.rng_oracle = streams
         self.machine = machines.draw(self.rng_machine, **wishes)
         self.masters, self.before = None, None
         if cam:
@@ -59,20 +60,18 @@ class Case:
             at += len(sets) * machines.TICK + self.rng_motion.uniform(2.0, 30.0)
         self.session = Session(train + held, begins, len(train), machines.TICK)
         self.noise = Noise(self.rng_noise, self.machine)
-        self.draw_noise()
+        self.noises = [self.draw_noise(self.rng_sensor, sets) for sets in self.session.sets]
         self.null()
 
-    def draw_noise(self):
-        """The noise of each log: force and encoder at each tick, current at each row."""
-        m, every = self.machine, round(1 / self.machine.rate / machines.TICK)
-        self.forces, self.errors, self.currents = [], [], []
-        for sets in self.session.sets:
-            self.forces.append(self.noise.on_carriage(self.rng_sensor, sets, machines.TICK))
-            self.errors.append(self.noise.of_encoder(self.rng_sensor, len(sets)))
-            self.currents.append(self.noise.of_current(self.rng_sensor, len(sets[::every]), 1 / m.rate))
+    def draw_noise(self, rng, sets):
+        """The noise of a log: force and encoder at each tick, current at each row."""
+        rate = self.machine.rate
+        every = round(1 / rate / machines.TICK)
+        return (self.noise.on_carriage(rng, sets, machines.TICK), self.noise.of_encoder(rng, len(sets)),
+                self.noise.of_current(rng, len(sets[::every]), 1 / rate))
 
-    def run(self, setup, log, noisy, substeps=None):
-        """A log: recorded with noise and steps, or without any."""
+    def run(self, setup, log, noise=None, substeps=None):
+        """A log: recorded with noise as of draw_noise and steps, or without any."""
         m, sets = self.machine, self.session.sets[log]
         outside, factor = setup.signals(self.session, log)
         substeps = substeps or usual_steps(setup)
@@ -81,10 +80,11 @@ class Case:
             substeps = 4
         arrays = (setup.p, setup.tables, setup.on)
         given = late_sets(sets, setup.behind)
-        if noisy:
-            made = plant.simulate(arrays, setup.c, given, outside + self.forces[log], factor, self.errors[log], substeps)
+        if noise is not None:
+            force, error, current = noise
+            made = plant.simulate(arrays, setup.c, given, outside + force, factor, error, substeps)
             self.check(made, sets)
-            return record(m, sets, made, setup.skew, self.currents[log])
+            return record(m, sets, made, setup.skew, current)
         p, c = setup.p.copy(), setup.c.copy()
         p[plant.INCREMENT] = c[machines.law.POSITION_INCREMENT] = 0.0
         made = plant.simulate((p, setup.tables, setup.on), c, given, outside, factor, None, substeps)
@@ -112,11 +112,11 @@ class Case:
         """The noiseless and the noisy null of the training logs, and the noise of each channel."""
         trained = range(self.session.trained)
         exact = Setup(self.machine)
-        self.clean = [self.run(exact, k, False) for k in trained]
+        self.clean = [self.run(exact, k) for k in trained]
         self.worst = max(np.abs(log.x - log.sets[:, 0]).max() for log in self.clean)
         self.masks = [residuals.moving(self.machine, log) for log in self.clean]
-        self.noisy = [self.run(exact, k, True) for k in trained]
-        self.channels = {}
+        self.noisy = [self.run(exact, k, self.noises[k]) for k in trained]
+        self.channels, self.seers, self.more = {}, {}, None
         if self.channel("force")[3] > (0.06 * self.machine.coulomb) ** 2:
             raise Unreachable("the noise is too large for a servo")
 
@@ -129,13 +129,49 @@ class Case:
             self.channels[name] = (clean, noise, masks, residuals.power(noise, masks))
         return self.channels[name]
 
+    def nulls(self, count, rng):
+        """Noise and logs of further noisy nulls of the training logs, in half of the usual steps."""
+        exact, out = Setup(self.machine), []
+        for _ in range(10 * count):
+            noises = [self.draw_noise(rng, sets) for sets in self.session.sets[:self.session.trained]]
+            try:
+                out.append((noises, [self.run(exact, k, noise, usual_steps(exact) // 2)
+                                     for k, noise in enumerate(noises)]))
+            except Unreachable:
+                continue
+            if len(out) == count:
+                return out
+        raise RuntimeError(f"found {len(out)} noisy nulls of {self.kind} {self.seed} in {10 * count}; expected {count}")
+
+    def samples(self, name, nulls):
+        """Of each log the noise of a channel in several nulls, and its part in closed form: nulls by rows."""
+        m, every = self.machine, round(1 / self.machine.rate / machines.TICK)
+        clean, _, masks, _ = self.channel(name)
+        noises, parts = [[] for _ in clean], [[] for _ in clean]
+        for drawn_now, logs in nulls:
+            for k, (noisy, (force, _, current)) in enumerate(zip(self.residual(name, logs), drawn_now)):
+                told = m.force_constant * current - (force[::every] if name == "force" else 0.0)
+                noises[k].append(noisy - clean[k])
+                parts[k].append(residuals.banded(told, masks[k], m.rate, name))
+        return [np.array(n) for n in noises], [np.array(p) for p in parts]
+
+    def seer(self, name):
+        """The oracle of a channel, made once."""
+        if name not in self.seers:
+            if not self.more:
+                self.more = self.nulls(FURTHER, self.rng_oracle)
+            noises, parts = self.samples(name, [(self.noises, self.noisy)] + self.more)
+            self.seers[name] = oracle.Oracle(self.machine, self.noise, name, self.clean, self.channel(name)[2], noises,
+                                             parts)
+        return self.seers[name]
+
     def effect(self, cause, size, steps=None):
         """The noiseless change of the residual by a cause, one signal per training log, in half of the usual steps (the
         selftest holds the share against finer ones)."""
         setup = Setup(self.machine)
         cause.apply(setup, size)
         steps = steps or usual_steps(setup) // 2
-        logs = [self.run(setup, k, False, steps) for k in range(self.session.trained)]
+        logs = [self.run(setup, k, None, steps) for k in range(self.session.trained)]
         return [a - b for a, b in zip(self.residual(cause.channel, logs), self.channel(cause.channel)[0])]
 
     def sized(self, cause, share):
@@ -243,7 +279,7 @@ def build(kind, seed, share=0.1, name=None, cam=False):
             tolerance.apply(setup, off)
         known = case.noisy if not (found or off) else []
         try:
-            logs = known + [case.run(setup, k, True) for k in range(len(known), len(case.session.sets))]
+            logs = known + [case.run(setup, k, case.noises[k]) for k in range(len(known), len(case.session.sets))]
         except Unreachable:
             continue
         return case, found, off, logs
@@ -254,8 +290,7 @@ def odds(case, found):
     """Nats of each hidden cause beside the others, and beside each set of aliases; the least of the first."""
     each, alias = {}, {}
     for k, (cause, _, effect, _) in enumerate(found):
-        clean, noise, masks, _ = case.channel(cause.channel)
-        seer = oracle.Oracle(case.machine, case.session, case.clean, masks, noise, cause.channel)
+        seer = case.seer(cause.channel)
         others = [seer.effect(e) for j, (c, _, e, _) in enumerate(found) if j != k and c.channel == cause.channel]
         each[cause.name] = seer.nats(effect, cause.nuisance, others)
         alias[cause.name] = {a: seer.nats(effect, cause.nuisance, others + seer.alias(a)) for a in cause.aliases}

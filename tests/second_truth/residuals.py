@@ -12,7 +12,7 @@ import math
 import paths  # noqa: F401
 import numpy as np
 from scipy.interpolate import CubicSpline
-from scipy.signal import butter, sosfiltfilt
+from scipy.signal import butter, sosfiltfilt, sosfreqz
 
 import controllers as law
 import laws
@@ -21,20 +21,45 @@ from fast import compiled
 from machines import TICK
 from records import Record
 
-BAND = 100.0
+BAND, LEAST = 100.0, 0.7  # Hz; LEAST: of the command residual alone
+
+
+def low_pass(rate, corner=BAND):
+    """Sections of the low-pass; none where the corner is near half of the rate."""
+    return None if corner > 0.45 * rate else butter(4, corner / (rate / 2), output="sos")
+
+
+def high_pass(rate):
+    """Sections of the high-pass of the command residual."""
+    return butter(2, LEAST / (rate / 2), "high", output="sos")
 
 
 def low_passed(values, rate, corner=BAND):
     """Zero-phase low-pass; as it is where the corner is near half of the rate."""
-    if corner > 0.45 * rate:
-        return values
-    sos = butter(4, corner / (rate / 2), output="sos")
-    return sosfiltfilt(sos, values, padlen=min(len(values) - 1, int(rate / corner * 6)))
+    sos = low_pass(rate, corner)
+    return values if sos is None else sosfiltfilt(
+        sos, values, padlen=min(len(values) - 1, int(rate / corner * 6)))
 
 
-def high_passed(values, rate, corner=0.7):
+def high_passed(values, rate):
     """Zero-phase high-pass."""
-    return sosfiltfilt(butter(2, corner / (rate / 2), "high", output="sos"), values)
+    return sosfiltfilt(high_pass(rate), values)
+
+
+def banded(values, mask, rate, channel):
+    """A signal as it shows in the residual of a channel, "force" or "command"; rows out of the mask do not count."""
+    values = low_passed(np.where(mask, values, 0.0), rate)
+    return high_passed(values, rate) if channel == "command" else values
+
+
+def passed(frequencies, rate, channel):
+    """Factor of a power spectrum in the band of a channel; frequencies: Hz. Forth and back, so the gain's 4th power."""
+    filters = [low_pass(rate)] + ([high_pass(rate)] if channel == "command" else [])
+    out = np.ones(len(frequencies))
+    for sos in filters:
+        if sos is not None:
+            out *= np.abs(sosfreqz(sos, frequencies, fs=rate)[1]) ** 4
+    return out
 
 
 def derivatives(x, step):
