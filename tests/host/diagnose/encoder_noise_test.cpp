@@ -20,6 +20,7 @@ host::Log swing(double noise, double amplitude, std::uint64_t seed) {
   std::normal_distribution<double> normal;
   host::Log log;
   log.axes.resize(1);
+  log.period = 1e-3;
   for (int k = 0; k < 8000; ++k) {
     const double t = 1e-3 * k, x = amplitude * std::sin(2.0 * std::numbers::pi * 0.4 * t) + noise * normal(random);
     log.t.push_back(t);
@@ -51,6 +52,22 @@ TEST(EncoderNoise, IsToldBesideTheIncrement) {
 TEST(EncoderNoise, IsNoneWhereStepsAreAllThereIs) {
   EXPECT_EQ(noise_of(0.0), 0.0);
   EXPECT_EQ(noise_of(0.05 * increment), 0.0);  // of the steps' 0.29
+}
+
+TEST(EncoderNoise, KnowsNothingOfSpikesAndLostSamples) {
+  auto log = swing(increment, 0.04, 1);
+  auto& x = log.axes.front().x;
+  for (std::size_t k = 100; k < x.size(); k += 500) x[k] += 1e-3;
+  for (std::size_t k = 350; k < x.size(); k += 1000) x[k] = x[k - 1];
+  const auto found = host::encoder_noise({log}, {swing(0.0, 0.04, 3)}, axis_of_increments());
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, increment, 0.05 * increment);
+}
+
+TEST(EncoderNoise, IsNotToldOfSlowRecords) {
+  auto log = swing(increment, 0.04, 1);
+  log.period = 4e-3;
+  EXPECT_FALSE(host::encoder_noise({log}, {swing(0.0, 0.04, 3)}, axis_of_increments()));
 }
 
 TEST(EncoderNoise, IsNotToldOfAnAxisAtRest) { EXPECT_FALSE(noise_of(2.0 * increment, 0.0)); }
