@@ -1,23 +1,14 @@
 // The second residual: what the drive commanded, less what the file's controller gives for the recorded set-points and
 // positions (command_replay.hpp). A wrong gain or integral time and a delay in the loop show here and leave nothing in
-// the residual force. Regressors are differences of such replays with one parameter changed; selection as in
-// search.hpp, then Gauss-Newton on the replay itself. A change that the file's own run seems to have too is no cause.
+// the residual force. Regressors are differences of such replays with one parameter changed; they are chosen by the
+// odds of whitened rows (command_search.hpp). A change that the file's own run seems to have too is no cause.
 #pragma once
 
-#include <span>
-
+#include "host/diagnose/judge/command_rows.hpp"
 #include "host/diagnose/record/diagnose_input.hpp"
 #include "host/diagnose/verdict/verdict.hpp"
-#include "host/identify/log_rows.hpp"
 
 namespace stiction::host {
-
-// Records of one kind with their rows.
-struct CommandRecords {
-  std::span<const Log> logs;
-  const LogRows& rows;
-  std::span<const Log> simulated;  // the file's own runs of the logs; empty where there are none
-};
 
 // By how much the current came late in the records (s) as the residual force says, with its standard error.
 struct RecordDelay {

@@ -70,6 +70,7 @@ AxisConfig<S> unsupervised(AxisConfig<S> config) {
   most(config.following_error_fault);
   most(config.over_current_fault);
   most(config.over_speed_fault);
+  config.limit_cycle_window_ticks = 1;  // too short for one
   return config;
 }
 

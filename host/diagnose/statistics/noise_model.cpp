@@ -44,8 +44,8 @@ White white_of(const Eigen::VectorXd& residual, const NoiseRows& rows, Memory me
 
 }  // namespace
 
-Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows) {
-  auto white = white_of(residual, rows, Memory::of_rows);
+Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows, Memory memory) {
+  auto white = white_of(residual, rows, memory);
   white.whitening.weigh((white.weight / white.variance).sqrt());
   return white.whitening;
 }

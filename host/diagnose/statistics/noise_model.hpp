@@ -10,8 +10,8 @@
 namespace stiction::host {
 
 // Makes rows white with a variance of one, those at rest and those in motion each. `residual`: what is taken for noise,
-// in `rows`, 0 in those that do not count.
-Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows);
+// in `rows`, 0 in those that do not count; `memory`: of its autoregression.
+Whitening noise_of(const Eigen::VectorXd& residual, const NoiseRows& rows, Memory memory = Memory::of_rows);
 
 // The log likelihood of noise that may wander for seconds, nats, but for a constant: what tells two residuals of the
 // same rows apart.
