@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "host/diagnose/exact_records.hpp"
 #include "host/diagnose/judge/command_residual.hpp"
 #include "host/identify/identification.hpp"
 #include "sim/effects/effects.hpp"
@@ -17,7 +18,8 @@ std::optional<DiagnoseInput> behind_master(const DiagnoseInput& input, const Pre
   if (!slave || !axis.cascaded() || (axis.elastic() && axis.velocity_encoder)) return std::nullopt;
   Verdict told;
   judge_command(told, input, {training.logs, training.rows, training.simulated},
-                {held_out.logs, held_out.rows, held_out.simulated}, {});
+                {held_out.logs, held_out.rows, held_out.simulated}, {},
+                exact_logs(prepared, input, prepared.on_axis.parts_of(training.target).on_axis));
   const auto late = std::ranges::find_if(
       told.findings, [](const Finding& finding) { return sim::is_a<sim::MasterDelay>(finding.effect); });
   if (late == told.findings.end()) return std::nullopt;

@@ -14,6 +14,7 @@
 #include "host/diagnose/classes/candidate_columns.hpp"
 #include "host/diagnose/describe/diagnosis_charts.hpp"
 #include "host/diagnose/describe/master_charts.hpp"
+#include "host/diagnose/exact_records.hpp"
 #include "host/diagnose/judge/changed_between.hpp"
 #include "host/diagnose/judge/closed_loop.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
@@ -183,9 +184,13 @@ void judge_drive(Verdict& verdict, const DiagnoseInput& input, const Prepared& o
         "The gains of the drive were not evaluated: its velocity controller sees a different encoder than the recorded "
         "one, with an elastic shaft between them.");
   else if (axis.cascaded())
-    judge_command(verdict, input, {training.logs, training.rows, training.simulated},
-                  {held_out.logs, held_out.rows, held_out.simulated},
-                  record_delay(searched.training.regressors, searched.context, found));
+    judge_command(
+        verdict, input, {training.logs, training.rows, training.simulated},
+        {held_out.logs, held_out.rows, held_out.simulated},
+        record_delay(searched.training.regressors, searched.context, found),
+        exact_logs(
+            of_file, input,
+            searched.on_axis.parts_of(found.residual.cwiseProduct(searched.training.regressors.counts())).on_axis));
 }
 
 void say_what_is_left(Verdict& verdict, const Prepared& prepared, const Explained& explained) {

@@ -5,6 +5,7 @@
 #include <Eigen/Dense>
 
 #include "host/diagnose/classes/candidate.hpp"
+#include "host/diagnose/judge/command_rows.hpp"
 #include "host/diagnose/prepare.hpp"
 
 namespace stiction::host {
@@ -16,6 +17,11 @@ namespace stiction::host {
 // so are those of the draws.
 ExactRecords exact_records(const Prepared& prepared, const DiagnoseInput& input, const Record& original,
                            const ForceOnAxis::Parts& noise);
+
+// Of the draws number begin to end, less one, those that the exact machine can follow: the training records' logs as
+// its drive would have recorded them, with windings. `prepared`, `input`: as above; `on_axis`: N, of the training rows,
+// like which forces are drawn.
+ExactLogs exact_logs(const Prepared& prepared, const DiagnoseInput& input, const Eigen::VectorXd& on_axis);
 
 // What of the residual force of the training records acted on the axis: exact machines move as much under it. All of
 // every force where their motion is not known. `prepared`, `input`: as above.

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "host/diagnose/classes/command_parameter.hpp"
 #include "host/diagnose/judge/command_search.hpp"
 #include "host/diagnose/judge/holdout.hpp"
 #include "host/diagnose/record/command_replay.hpp"
+#include "host/diagnose/statistics/level.hpp"
 #include "host/identify/identification.hpp"
 #include "host/identify/regression.hpp"
 #include "sim/effects/effects.hpp"
@@ -16,14 +18,8 @@
 namespace stiction::host {
 namespace {
 
-// Of a change: where the file's own run shows so much of it, it is the replay's.
-constexpr double of_own_run = 0.5;
 // The rest of a command that is another controller's, over the command itself.
 constexpr double foreign = 0.3;
-// Of a gain: what the digits of a file and a drive's number formats leave open. On the EMPS record, whose command the
-// replay meets to 1 mV, 0.02 % of the velocity gain is significant, and without any effect.
-constexpr double least_change = 1e-3;
-
 bool usable(const CommandRecords& records, const machine::AxisModel& axis) {
   return std::all_of(records.logs.begin(), records.logs.end(),
                      [&](const Log& log) { return recorded_command(channels_of(log, axis), axis).has_value(); });
@@ -110,20 +106,30 @@ void give_figures(Verdict& verdict, std::vector<Finding>& findings, const Comman
   }
 }
 
+// How often chance may give one parameter to a drive that has none.
+double level_of_each() { return level_of_design / static_cast<double>(command_parameters().size()); }
+
+// That held-out records gain as much by chance, from the interval of the ratio.
+double chance_of_gain(const HoldoutGain& gain) {
+  const double deviation = (gain.ci95[1] - gain.ci95[0]) / (2.0 * normal_limit);
+  return 0.5 * std::erfc((1.0 - *gain.command_rms_ratio) / std::max(deviation, 1e-12) / std::numbers::sqrt2);
+}
+
 // Those of the terms that say something of the drive.
 void drop_artefacts(std::vector<CommandTerm>& terms, const machine::AxisModel& axis, const RecordDelay& delay) {
   std::erase_if(terms, [&](const CommandTerm& term) {
     const auto& p = command_parameters()[term.place];
     const double change = term.value - *p.value(axis);
-    if (term.in_own_run / change > of_own_run) return true;
+    if (term.p_of_exact > level_of_each()) return true;
     if (p.is_delay) return change <= 0.0 || (!p.of_master && is_record_delay(delay, change));
     const double ratio = term.value / *p.value(axis);
-    return std::abs(ratio - 1.0) < least_change || ratio <= least_of_file || ratio >= most_of_file;
+    return ratio <= least_of_file || ratio >= most_of_file;
   });
 }
 
 void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
-                    const CommandRecords& held_out, const RecordDelay& delay, const machine::AxisModel& axis) {
+                    const CommandRecords& held_out, const RecordDelay& delay, const ExactLogs& exact,
+                    const machine::AxisModel& axis) {
   const auto& file = input.machine.axes[input.axis];
   const auto& timing = input.machine.timing;
   Places places;
@@ -147,9 +153,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
     return;
   }
   auto& terms = found.terms;
-  const CommandRecords own{training.simulated, training.rows, {}};
-  if (!terms.empty() && own.logs.size() == training.logs.size() && usable(own, axis))
-    look_at_own_runs({own, timing, axis, 0.0}, found.noise, terms);
+  compare_with_exact(training, commands, exact, found);
   drop_artefacts(terms, axis, delay);
 
   std::vector<Finding> findings;
@@ -161,12 +165,12 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
       findings.push_back(finding_of(file, *parameter.effect, terms));
   give_figures(verdict, findings, commands, held, found, input.seed);
   for (auto& finding : findings) {
-    if (const auto& [least, most] = finding.holdout.ci95; most >= 1.0) {
+    if (const auto& [least, most] = finding.holdout.ci95; chance_of_gain(finding.holdout) > level_of_each()) {
       verdict.rejected.push_back(
           {finding.effect, fmt::format("withdrawn: found in the command residual of the training data, but on held-out "
-                                       "data without a certain gain: {:.4g} times the residual without it, {:.4g} to "
-                                       "{:.4g} with 95 %",
-                                       *finding.holdout.command_rms_ratio, least, most)});
+                                       "data its gain may be chance: {:.4g} times the residual without it, {:.4g} to "
+                                       "{:.4g} with 95 %, and {} parameters were tried",
+                                       *finding.holdout.command_rms_ratio, least, most, command_parameters().size())});
       continue;
     }
     finding.evidence = fmt::format(
@@ -192,7 +196,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
 }  // namespace
 
 void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRecords& training,
-                   const CommandRecords& held_out, const RecordDelay& delay) {
+                   const CommandRecords& held_out, const RecordDelay& delay, const ExactLogs& exact) {
   auto axis = sim::drive_axis(input.machine.axes[input.axis]);
   // What the drive has of them is in its parameters now.
   std::erase_if(axis.effects, [](const machine::Effect& effect) {
@@ -201,7 +205,7 @@ void judge_command(Verdict& verdict, const DiagnoseInput& input, const CommandRe
   });
   if (!usable(training, axis) || !usable(held_out, axis)) return;
   try {
-    find_and_judge(verdict, input, training, held_out, delay, axis);
+    find_and_judge(verdict, input, training, held_out, delay, exact, axis);
   } catch (const LogError& error) {
     verdict.notes.push_back(fmt::format("The gains of the drive were not evaluated: {}.", error.what()));
   }

@@ -6,6 +6,7 @@
 
 #include <Eigen/Dense>
 #include <cstddef>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,10 @@ struct CommandRecords {
   const LogRows& rows;
   std::span<const Log> simulated;  // the file's own runs of the logs; empty where there are none
 };
+
+// Of the draws number begin to end, less one, those that a machine can follow: logs as its drive would have recorded
+// them.
+using ExactLogs = std::function<std::vector<std::vector<Log>>(std::size_t begin, std::size_t end)>;
 
 class CommandRows {
  public:

@@ -19,7 +19,8 @@ struct CommandTerm {
   std::size_t place;
   double value = 0.0, deviation = 0.0;
   double p_value = 1.0;
-  double in_own_run = 0.0;  // change that the file's own runs seem to have
+  // That records of the exact machine seem to have such a change, by Student's t of what they have; 1 of none.
+  double p_of_exact = 1.0;
 };
 
 // The `axis` with the values of the terms.
@@ -39,8 +40,10 @@ CommandSearch search_command(const CommandRows& commands, const Places& places);
 Eigen::VectorXd whitened_without_nuisances(const CommandRows& commands, const Eigen::VectorXd& values,
                                            const Whitening& noise);
 
-// Sets by how much each of the terms seems to differ in `own`, the file's own runs of the records, through the `noise`.
-void look_at_own_runs(const CommandRows& own, const Whitening& noise, std::vector<CommandTerm>& terms);
+// Compares the terms of the `found` with what draws of the `exact` machine seem to have of them: a replay knows no
+// positions between the samples. `records`: those that were searched; `commands`: their rows.
+void compare_with_exact(const CommandRecords& records, const CommandRows& commands, const ExactLogs& exact,
+                        CommandSearch& found);
 
 // The log likelihood of what all parameters at `places` together leave, nats, but for a constant: what tells two ways
 // to read a record apart.

@@ -5,13 +5,13 @@
 
 #include "host/algebra/least_squares.hpp"
 #include "host/diagnose/statistics/fisher.hpp"
+#include "host/diagnose/statistics/level.hpp"
 
 namespace stiction::host {
 namespace {
 
 // Of the noise that all clusters agree on, against what the few under a term say of their own.
 constexpr double most_freedom = 30.0;
-constexpr double normal_limit = 1.959964;  // exceeded by |z| with a probability of 5 %
 
 // Pseudo-inverse, in columns of one length, or newtons beside metres would hide a dependence.
 Eigen::MatrixXd inverse(const Eigen::MatrixXd& gram) {

@@ -7,8 +7,12 @@
 #include <random>
 #include <string_view>
 
+#include "host/diagnose/classes/command_parameter.hpp"
 #include "host/diagnose/diagnose.hpp"
+#include "host/diagnose/judge/command_search.hpp"
 #include "host/diagnose/record/command_replay.hpp"
+#include "host/diagnose/record/record.hpp"
+#include "host/diagnose/record/record_rows.hpp"
 #include "sim/plant/friction/coulomb_viscous.hpp"
 #include "sim/plant/friction/parameters.hpp"
 #include "stiction/number/fixed_signals.hpp"
@@ -164,6 +168,34 @@ TEST(CommandResidual, finds_a_tenth_of_a_microsecond_behind_the_master_in_a_slow
   figure("command residual, delay behind the master in a log of 4 ms",
          std::to_string(1e9 * value) + " ns, true 100 ns");
   EXPECT_NEAR(value, late, 0.1 * late);
+}
+
+// What records of the exact machine seem to have as well is the replay's doing, whatever its odds.
+TEST(CommandResidual, tells_a_change_that_exact_records_seem_to_have_too) {
+  const auto machine = force_machine();
+  const auto& axis = machine.axes.front();
+  host::Record training;
+  training.logs = {record({.position = 88.0}, 0.0, 1)};
+  host::measure(training, axis, host::signals_in(host::RowBand::usual, training.logs));
+  const host::CommandRecords records{training.logs, training.rows, {}};
+  const host::CommandRows commands(records, machine.timing, axis, 0.0);
+  host::Places places;
+  for (std::size_t k = 0; k < host::command_parameters().size(); ++k)
+    if (const auto& parameter = host::command_parameters()[k]; parameter.value(axis) && !parameter.of_master)
+      places.push_back(k);
+  const auto chance_if_exact_records_have = [&](double gain) {
+    auto found = host::search_command(commands, places);
+    EXPECT_EQ(found.terms.size(), 1u);
+    const auto draws = [&](std::size_t begin, std::size_t end) {
+      std::vector<std::vector<host::Log>> all;
+      for (std::size_t k = begin; k < end; ++k) all.push_back({record({.position = gain}, 0.0, k)});
+      return all;
+    };
+    host::compare_with_exact(records, commands, draws, found);
+    return found.terms.front().p_of_exact;
+  };
+  EXPECT_GT(chance_if_exact_records_have(88.0), 0.001);
+  EXPECT_LT(chance_if_exact_records_have(80.0), 1e-6);
 }
 
 struct Case {
