@@ -120,10 +120,22 @@ void drop_artefacts(std::vector<CommandTerm>& terms, const machine::AxisModel& a
   std::erase_if(terms, [&](const CommandTerm& term) {
     const auto& p = command_parameters()[term.place];
     const double change = term.value - *p.value(axis);
-    if (term.p_of_exact > level_of_each()) return true;
     if (p.is_delay) return change <= 0.0 || (!p.of_master && is_record_delay(delay, change));
     const double ratio = term.value / *p.value(axis);
     return ratio <= least_of_file || ratio >= most_of_file;
+  });
+}
+
+// And those that records of the exact machine seem to have too, which the verdict says.
+void drop_what_exact_records_have(std::vector<CommandTerm>& terms, Verdict& verdict) {
+  std::erase_if(terms, [&](const CommandTerm& term) {
+    if (term.p_of_exact <= level_of_each()) return false;
+    const auto& parameter = command_parameters()[term.place];
+    verdict.rejected.push_back(
+        {*parameter.effect, fmt::format("the command residual seems to have a different {}, but records of the machine "
+                                        "as its file says show as much, or could not be made",
+                                        parameter.key)});
+    return true;
   });
 }
 
@@ -155,6 +167,7 @@ void find_and_judge(Verdict& verdict, const DiagnoseInput& input, const CommandR
   auto& terms = found.terms;
   compare_with_exact(training, commands, exact, found);
   drop_artefacts(terms, axis, delay);
+  drop_what_exact_records_have(terms, verdict);
 
   std::vector<Finding> findings;
   for (const auto& parameter : command_parameters())
