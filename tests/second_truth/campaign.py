@@ -22,7 +22,8 @@ import time
 
 import paths  # noqa: F401
 
-from scoring import judge, table
+from scoring import judge
+from table import table
 
 # Twenty cases: half of them single.
 MIX = ["single", "exact", "single", "pair", "single", "unknown", "single", "tolerance", "single", "pair",

@@ -295,3 +295,19 @@ def odds(case, found):
         each[cause.name] = seer.nats(effect, cause.nuisance, others)
         alias[cause.name] = {a: seer.nats(effect, cause.nuisance, others + seer.alias(a)) for a in cause.aliases}
     return (min(each.values()) if each else None), each, alias
+
+
+def held_out(case, logs):
+    """Mean square of the residual force on the held-out records, and on the same ones with nothing hidden; N².
+
+    None where nothing hidden is not what the servo can hold."""
+    exact, with_it, without, masks = Setup(case.machine), [], [], []
+    try:
+        for k in range(case.session.trained, len(logs)):
+            mask = residuals.moving(case.machine, case.run(exact, k))
+            for into, log in ((with_it, logs[k]), (without, case.run(exact, k, case.noises[k]))):
+                into.append(residuals.force(case.machine, log, mask))
+            masks.append(mask)
+    except Unreachable:
+        return None
+    return [residuals.power(with_it, masks), residuals.power(without, masks)]

@@ -31,8 +31,8 @@ def plain(value):
     return value.item() if isinstance(value, np.generic) else value
 
 
-def truth_of(case, found, off, share, seconds):
-    """The content of truth.json."""
+def truth_of(case, found, off, share, held):
+    """The content of truth.json but for the time that it took."""
     least, each, alias = cases.odds(case, found)
     named = [f for f in found if not f[0].name.startswith("unknown")]
     return plain({
@@ -47,8 +47,8 @@ def truth_of(case, found, off, share, seconds):
         "oracle_nats": least, "oracle_nats_each": each, "oracle_alias_nats": alias,
         "machine": case.machine.facts(), "noise": case.noise.facts(),
         "noise_rms": float(np.sqrt(case.channel("force")[3])),
-        "train_s": [len(s) * case.session.tick for s in case.session.sets[:case.session.trained]],
-        "seconds": seconds})
+        "held_out_force": held,
+        "train_s": [len(s) * case.session.tick for s in case.session.sets[:case.session.trained]]})
 
 
 def generate(kind, seed, folder, share=0.1, name=None, setpoints=True, cam=False):
@@ -67,7 +67,8 @@ def generate(kind, seed, folder, share=0.1, name=None, setpoints=True, cam=False
             log = log.behind(rows)
         records.write(log, folder / file, case.machine, setpoints, master)
     (folder / "machine.toml").write_text(machine_file.text(case.machine), encoding="utf-8")
-    truth = truth_of(case, found, off, share, time.process_time() - began)
+    truth = truth_of(case, found, off, share, cases.held_out(case, logs))
+    truth["seconds"] = time.process_time() - began
     (folder / "truth.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
     return truth
 
