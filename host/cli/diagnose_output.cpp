@@ -18,7 +18,7 @@ std::vector<machine::AxisEffects> additions_of(const std::vector<Verdict>& verdi
     machine::AxisEffects effects{axis.name, {}};
     for (const auto& verdict : verdicts)
       for (const auto& finding : verdict.findings)
-        if (finding.axis == axis.name) effects.effects.push_back(finding.row());
+        if (finding.axis == axis.name && finding.withheld.empty()) effects.effects.push_back(finding.row());
     if (!effects.effects.empty()) additions.push_back(std::move(effects));
   }
   return additions;

@@ -122,8 +122,10 @@ Explained explain(Prepared& prepared, SearchResult found, const HeldOutData& hel
   return explained;
 }
 
-// Figures of the findings on held-out data, and the tables that extend the machine where no name does.
-void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& explained, const HeldOutData& held_out) {
+// Figures of the findings on held-out data, and the tables that extend the machine where no name does. Returns the
+// terms of all of them, in their order.
+std::vector<Term> give_figures(Verdict& verdict, const Prepared& prepared, const Explained& explained,
+                               const HeldOutData& held_out) {
   const auto& terms = explained.found.terms;
   auto maps = maps_of(explained.unnamed);
   const auto figures = keep_confirmed_maps(held_out, terms, maps);
@@ -141,6 +143,21 @@ void give_figures(Verdict& verdict, const Prepared& prepared, const Explained& e
   auto shown = terms;
   shown.insert(shown.end(), maps.begin(), maps.end());
   add_cause_charts(verdict, rows, prepared.context, shown, explained.found.residual);
+  return shown;
+}
+
+// The residuals that the extended machine file leaves where keys are withheld: those without their findings. `terms`:
+// of the first findings.
+void leave_out_withheld(Verdict& verdict, const std::vector<Term>& terms, const HeldOutData& held_out) {
+  const auto& findings = verdict.findings;
+  const auto written = written_findings(findings);
+  if (written.size() == findings.size()) return;
+  std::vector<bool> counted;
+  for (std::size_t k = 0; k < terms.size(); ++k) counted.push_back(findings[k].withheld.empty());
+  verdict.extended.force_rms = held_out_force(held_out, terms, counted);
+  if (std::none_of(written.begin(), written.end(),
+                   [](const Finding& finding) { return finding.residual == Residual::command; }))
+    verdict.extended.command_rms = verdict.baseline.command_rms;
 }
 
 std::string said_of(const ChangedParameter& changed) {
@@ -207,8 +224,8 @@ double rms_about_mean(const Eigen::VectorXd& values, const Eigen::VectorXd& coun
   return std::sqrt(centred.cwiseProduct(counts).squaredNorm() / static_cast<double>(std::max<long>(values.size(), 1)));
 }
 
-// What was found and withdrawn is still there, and what the held-out records have beyond the training ones was looked
-// for in neither: both are no disturbance.
+// What was found and withdrawn, or whose keys are withheld, is still there, and what the held-out records have beyond
+// the training ones was looked for in neither: both are no disturbance.
 void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained& explained, std::uint64_t seed,
                      double disturbed_position) {
   const auto& held_out = prepared.held_out;
@@ -217,8 +234,9 @@ void judge_agreement(Verdict& verdict, const Prepared& prepared, const Explained
       noise_floor(held_out.logs, prepared.axis, prepared.settings, counts, held_out.simulated, held_out.expected, seed);
   verdict.noise_floor = floor;
   const double known = std::hypot(floor.force(), rms(explained.found.residual));
-  const bool repeats = verdict.unexplained.signature.has_value() || explained.withdrew ||
-                       verdict.extended.force_rms > force_margin * known;
+  const bool missing = explained.withdrew || written_findings(verdict.findings).size() < verdict.findings.size();
+  const bool repeats =
+      verdict.unexplained.signature.has_value() || missing || verdict.extended.force_rms > force_margin * known;
   verdict.agreement =
       agreement_of({verdict.extended.force_rms, verdict.extended.position_error_rms, floor.force(), floor.position,
                     rms_about_mean(held_out.rows.force, counts), repeats, disturbed_position},
@@ -250,7 +268,7 @@ std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
   const HeldOutData unseen{held_out.regressors, comparable, records.context, records.responses, input.seed};
   const auto explained = explain(records, std::move(found), unseen, begin, verdict);
   if (band == RowBand::wide && explained.found.terms.empty()) return {};
-  give_figures(verdict, records, explained, unseen);
+  const auto terms = give_figures(verdict, records, explained, unseen);
   begin(4);
   propose_next_measurement(verdict,
                            {input.machine, input.axis, records.settings, training.logs, training.regressors,
@@ -269,6 +287,7 @@ std::optional<Verdict> diagnose_in(RowBand band, const DiagnoseInput& input) {
     const auto left = records.on_axis.parts_of(explained.found.residual.cwiseProduct(rows.counts()));
     const Disturbance disturbance(left.on_axis, rows.logs(), rows.period(0));
     disturbed_position = judge_in_closed_loop(verdict, input.machine, input.axis, held_out.logs, disturbance);
+    leave_out_withheld(verdict, terms, unseen);
   }
   judge_agreement(verdict, records, explained, input.seed, disturbed_position);
   return verdict;

@@ -97,8 +97,10 @@ std::string how_sure(const Finding& finding) {
 std::string on_part(const Finding& finding, const ShownQuantity& deviation) {
   if (!finding.part_error)
     return "Not computed: the logs have no set-points with which the simulation could run with and without this cause.";
-  return typeset(fmt::format("Changes the position error by up to {} {}.",
-                             deviation_text(*finding.part_error, deviation), deviation.unit));
+  const auto withheld =
+      finding.withheld.empty() ? std::string() : fmt::format(" extended.toml lacks its keys: {}.", finding.withheld);
+  return typeset(fmt::format("Changes the position error by up to {} {}.{}",
+                             deviation_text(*finding.part_error, deviation), deviation.unit, withheld));
 }
 
 json cause_json(const Finding& finding, const Verdict& verdict) {
@@ -128,6 +130,7 @@ json cause_json(const Finding& finding, const Verdict& verdict) {
           {"evidence", typeset(finding.evidence)},
           {"figures", figures_of(finding)},
           {"on_part", on_part(finding, deviation)},
+          {"withheld", !finding.withheld.empty()},
           {"confused_with", confused}};
 }
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <functional>
 
 #include "host/diagnose/describe/diagnosis_charts.hpp"
+#include "host/diagnose/judge/position_error.hpp"
+#include "host/diagnose/judge/withheld_keys.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
 #include "host/diagnose/verdict/chart_means.hpp"
 #include "host/simulate/control_run.hpp"
 #include "sim/effects/cross_axis_coupling/cross_axis_coupling.hpp"
-#include "sim/effects/effects.hpp"
 
 namespace stiction::host {
 namespace {
@@ -21,53 +21,14 @@ namespace {
 // increment, is small.
 constexpr double small_share = 0.01;
 
-constexpr double ignored = 0.25;  // s at a log's start, in which contact and loop come from a state that is not known
-
-// rms over all logs of the difference, less its mean in each: the encoders' zeros are not a cause's doing.
-double difference_rms(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
-                      const std::vector<Log>& logs) {
-  double square = 0.0;
-  std::size_t count = 0;
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    const auto first = std::min(static_cast<std::size_t>(ignored / logs[k].period), a[k].size() / 2);
-    for (std::size_t i = first; i < a[k].size(); ++i, ++count) square += (a[k][i] - b[k][i]) * (a[k][i] - b[k][i]);
-  }
-  return std::sqrt(square / static_cast<double>(std::max<std::size_t>(count, 1)));
-}
-
-double largest_difference(const std::vector<std::vector<double>>& a, const std::vector<std::vector<double>>& b,
-                          const std::vector<Log>& logs) {
-  double largest = 0.0;
-  for (std::size_t k = 0; k < logs.size(); ++k) {
-    const auto first = std::min(static_cast<std::size_t>(ignored / logs[k].period), a[k].size() / 2);
-    for (std::size_t i = first; i < a[k].size(); ++i) largest = std::max(largest, std::abs(a[k][i] - b[k][i]));
-  }
-  return largest;
-}
-
-// m rms, between `silent` positions and those under a draw of the disturbance; 0 where the machine cannot follow.
-double moved_by(const Disturbance& disturbance, ReplaySetup setup, const std::vector<std::vector<double>>& silent) {
-  for (std::size_t k = 0; k < setup.logs.size(); ++k) {
-    auto& force = setup.logs[k].axes.front().external_force;
-    const auto drawn = disturbance.drawn(setup.logs[k].t, k);
-    force.resize(drawn.size(), 0.0);
-    std::transform(force.begin(), force.end(), drawn.begin(), force.begin(), std::plus<>());
-  }
-  try {
-    return difference_rms(simulated_positions(setup), silent, setup.logs);
-  } catch (const FaultTripped&) {
-    return 0.0;
-  }
-}
-
 // Position error of the held-out log whose baseline is furthest off, over time, first shown around the worst instant;
 // and the difference of simulated and measured position below it.
-void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vector<std::vector<double>>& measured,
-                  const std::vector<std::vector<double>>& baseline, const std::vector<std::vector<double>>& extended) {
+void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const Positions& measured, const Positions& baseline,
+                  const Positions& extended) {
   std::size_t log = 0, at = 0;
   double largest = -1.0;
   for (std::size_t k = 0; k < logs.size(); ++k)
-    for (auto i = static_cast<std::size_t>(ignored / logs[k].period); i < measured[k].size(); ++i)
+    for (auto i = first_compared(logs[k]); i < measured[k].size(); ++i)
       if (const double off = std::abs(measured[k][i] - baseline[k][i]); off > largest) largest = off, log = k, at = i;
   const auto& chosen = logs[log];
   const auto& set = chosen.axes.front().x_set;
@@ -106,14 +67,33 @@ void add_pictures(Verdict& verdict, const std::vector<Log>& logs, const std::vec
   verdict.before_after.insert(verdict.before_after.begin(), {std::move(error), std::move(difference)});
 }
 
-}  // namespace
-
-machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings) {
-  for (const auto& finding : findings)
-    for (auto& axis : machine.axes)
-      if (axis.name == finding.axis) axis.effects.push_back(finding.row());
-  return machine;
+// The machine's simulation with what was found, and what each finding does to it.
+void judge_findings(Verdict& verdict, const ReplaySetup& setup, const Positions& measured, const Positions& baseline) {
+  const auto with = [&](const std::vector<Finding>& findings) {
+    return simulated_positions(extended_setup(setup, findings));
+  };
+  const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
+  verdict.extended.position_error_rms = difference_rms(measured, all, setup.logs);
+  for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
+    auto others = verdict.findings;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
+    const auto without = with(others);
+    auto& finding = verdict.findings[k];
+    finding.holdout.position_error_rms_ratio =
+        *verdict.extended.position_error_rms / std::max(difference_rms(measured, without, setup.logs), 1e-15);
+    finding.part_error = largest_difference(all, without, setup.logs);
+  }
 }
+
+// The figures and the picture of the file that is written: without the keys that are withheld.
+void judge_file(Verdict& verdict, const ReplaySetup& setup, const Positions& measured, const Positions& baseline) {
+  const auto written = written_findings(verdict.findings);
+  const auto positions = written.empty() ? baseline : simulated_positions(extended_setup(setup, written));
+  verdict.extended.position_error_rms = difference_rms(measured, positions, setup.logs);
+  add_pictures(verdict, setup.logs, measured, baseline, positions);
+}
+
+}  // namespace
 
 double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,
                             const std::vector<Log>& held_out, const Disturbance& disturbance) {
@@ -127,14 +107,8 @@ double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, s
   if (setup.logs.empty()) return 0.0;
   verdict.closed_loop_withheld = why_not_simulated(machine, axis, held_out, coupled);
   if (!verdict.closed_loop_withheld.empty()) return 0.0;
-  std::vector<std::vector<double>> measured;
+  Positions measured, baseline;
   for (const auto& log : setup.logs) measured.push_back(log.axes.front().x);
-  const auto with = [&](const std::vector<Finding>& findings) {
-    auto extended = setup;
-    extended.machine = extended_machine(setup.machine, findings);
-    return simulated_positions(extended);
-  };
-  std::vector<std::vector<double>> baseline;
   try {
     baseline = simulated_positions(setup);
   } catch (const FaultTripped& fault) {
@@ -146,24 +120,20 @@ double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, s
   verdict.baseline.position_error_rms = difference_rms(measured, baseline, setup.logs);
   verdict.small_below =
       std::max(setup.machine.axes.front().encoder.increment, small_share * *verdict.baseline.position_error_rms);
-  try {
-    const auto all = verdict.findings.empty() ? baseline : with(verdict.findings);
-    verdict.extended.position_error_rms = difference_rms(measured, all, setup.logs);
-    add_pictures(verdict, setup.logs, measured, baseline, all);
-    for (std::size_t k = 0; k < verdict.findings.size(); ++k) {
-      auto others = verdict.findings;
-      others.erase(others.begin() + static_cast<std::ptrdiff_t>(k));
-      const auto without = with(others);
-      auto& finding = verdict.findings[k];
-      finding.holdout.position_error_rms_ratio =
-          *verdict.extended.position_error_rms / std::max(difference_rms(measured, without, setup.logs), 1e-15);
-      finding.part_error = largest_difference(all, without, setup.logs);
+  const auto noted = [&](const auto& judge) {
+    try {
+      judge(verdict, setup, measured, baseline);
+    } catch (const FaultTripped& fault) {
+      verdict.notes.push_back(fmt::format(
+          "The simulation with what was found could not follow the held-out set-points ({}).", fault.what()));
     }
-  } catch (const FaultTripped& fault) {
-    verdict.notes.push_back(fmt::format(
-        "The simulation of the extended machine file could not follow the held-out set-points ({}).", fault.what()));
-  }
-  return disturbance ? moved_by(disturbance, setup, baseline) : 0.0;
+  };
+  noted(judge_findings);
+  if (verdict.extended.position_error_rms.value_or(HUGE_VAL) > *verdict.baseline.position_error_rms)
+    withhold_what_follows_worse(verdict.findings, setup, measured, disturbance);
+  noted(judge_file);
+  const auto moved = disturbance ? positions_under(disturbance, setup, 0) : std::nullopt;
+  return moved ? difference_rms(*moved, baseline, setup.logs) : 0.0;
 }
 
 }  // namespace stiction::host

@@ -11,11 +11,9 @@
 
 namespace stiction::host {
 
-// The machine with the findings' effects on their axis.
-machine::Machine extended_machine(machine::Machine machine, const std::vector<Finding>& findings);
-
-// Fills in position errors, their ratios by finding and what each does to the position. Without set-points nothing is
-// changed. A machine that cannot follow the set-points is a LogError without causes and a note with them. `verdict`:
+// Fills in position errors, their ratios by finding, what each does to the position, and which keys are withheld.
+// Without set-points nothing is changed. A machine that cannot follow the set-points is a LogError without causes; with
+// them it is a note, and the keys are withheld that keep it from following. `verdict`:
 // with its findings on `axis`, the index in `machine`; `held_out`: logs that were not used; `disturbance`: what acts on
 // the axis beside. Returns what that makes of the position, m rms.
 double judge_in_closed_loop(Verdict& verdict, const machine::Machine& machine, std::size_t axis,

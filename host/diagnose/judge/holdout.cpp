@@ -142,6 +142,18 @@ std::vector<Eigen::VectorXd> take_terms(const LogRows& rows, const SearchContext
   return forces;
 }
 
+// What each record may have beside the terms: not what one of them names.
+struct Beside {
+  bool constant = true, coulomb = true;
+
+  explicit Beside(std::span<const Term> terms) {
+    for (const auto& term : terms) {
+      constant = constant && !candidates()[term.candidate].names_constant;
+      coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
+    }
+  }
+};
+
 std::vector<RowBlock> blocks_of_rows(const LogRows& rows) {
   return blocks_of(rows.velocity, rows.logs(), static_cast<std::size_t>(rows.rows() / 60 + 1));
 }
@@ -178,16 +190,21 @@ Eigen::VectorXd without_terms(const LogRows& rows, const Eigen::VectorXd& target
   return rest;
 }
 
+double held_out_force(const HeldOutData& data, std::span<const Term> terms, const std::vector<bool>& counted) {
+  Eigen::VectorXd rest = data.target;
+  const auto forces = take_terms(data.rows, data.context, data.responses, terms, rest);
+  for (std::size_t k = 0; k < terms.size(); ++k)
+    if (!counted[k]) rest += forces[k];
+  const Beside beside(terms);
+  return rms(Nuisances(data.rows, data.context, beside.constant, beside.coulomb).without(rest));
+}
+
 HeldOutFigures evaluate_held_out(const HeldOutData& data, std::span<const Term> terms) {
   const auto& rows = data.rows;
   const auto& context = data.context;
   Eigen::VectorXd rest = data.target;
   const auto forces = take_terms(rows, context, data.responses, terms, rest);
-  bool constant = true, coulomb = true;
-  for (const auto& term : terms) {
-    constant = constant && !candidates()[term.candidate].names_constant;
-    coulomb = coulomb && !candidates()[term.candidate].names_coulomb;
-  }
+  const auto [constant, coulomb] = Beside(terms);
   const Nuisances nuisances(rows, context, constant, coulomb);
   const Eigen::VectorXd baseline = nuisances.without(data.target), extended = nuisances.without(rest);
   HeldOutFigures figures{rms(baseline), rms(extended), {}, {}, {}};

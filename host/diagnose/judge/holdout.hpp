@@ -39,6 +39,10 @@ struct HeldOutData {
 // runs of these records. Intervals: bootstrap over blocks of rows.
 HeldOutFigures evaluate_held_out(const HeldOutData& data, std::span<const Term> terms);
 
+// N rms, the residual force of the same data where of the `terms` those that are `counted` act alone; with the
+// nuisances of all of them.
+double held_out_force(const HeldOutData& data, std::span<const Term> terms, const std::vector<bool>& counted);
+
 // 95 % interval of the ratio of two residuals' rms, from a bootstrap over blocks of rows. `after` and `before`:
 // residual force in the `rows` (N) with the causes and without them; `seed` of the bootstrap.
 std::array<double, 2> ratio_interval(const Eigen::VectorXd& after, const Eigen::VectorXd& before, const LogRows& rows,

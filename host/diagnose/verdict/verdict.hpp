@@ -83,6 +83,7 @@ struct Finding {
   std::optional<NamedIn> without_each_log;  // none: of a single log
   std::string evidence;                     // sentences for readers
   std::optional<double> part_error;         // m, what it does to the part: peak change of the position error by it
+  std::string withheld;                     // clause: why the extended machine file lacks its keys; empty: it has them
   std::vector<sim::Chart> charts;
 
   bool names_cause() const { return !sim::is_a<sim::ForceMap>(effect); }
@@ -93,6 +94,13 @@ inline std::size_t named_causes(const std::vector<Finding>& findings) {
   return static_cast<std::size_t>(
       std::count_if(findings.begin(), findings.end(), [](const Finding& finding) { return finding.names_cause(); }));
 }
+
+// Those whose keys the extended machine file has.
+inline std::vector<Finding> written_findings(std::vector<Finding> findings) {
+  std::erase_if(findings, [](const Finding& finding) { return !finding.withheld.empty(); });
+  return findings;
+}
+
 // The order in which they are told: causes before what has no name, and each by what it explains.
 inline bool told_before(const Finding& one, const Finding& other) {
   return one.names_cause() != other.names_cause() ? one.names_cause() : one.explains > other.explains;

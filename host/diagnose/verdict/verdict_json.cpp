@@ -49,6 +49,7 @@ Json finding_json(const Finding& f, const Verdict& verdict) {
   if (f.residual == Residual::encoders) out["residual"] = "encoders";
   if (f.part_error) out[named("part_error", units.deviation)] = units.deviation(*f.part_error);
   if (f.part_error && verdict.small_below) out["small"] = verdict.is_small(f);
+  if (!f.withheld.empty()) out["withheld"] = f.withheld;
   return out;
 }
 
@@ -358,6 +359,7 @@ std::string verdict_text(const Verdict& verdict) {
     if (f.holdout.position_error_rms_ratio)
       text += fmt::format(", position error {:.3f} times that without it", *f.holdout.position_error_rms_ratio);
     text += "\n";
+    if (!f.withheld.empty()) text += fmt::format("   its keys are not in extended.toml: {}\n", f.withheld);
     for (const auto& c : f.confused_with)
       text += fmt::format("   may be {} instead; to separate them: {}\n", c.effect.name(), c.separate_by);
   }

@@ -47,7 +47,8 @@ function explained(cause) {
           ...(cause.sure ? [element('div', {}, cause.sure)] : []),
           element('div', {}, `${minus(cause.gain)} % less on held-out data (95 %: ${minus(cause.gain_interval)} %)`),
           ...(cause.part ? [element('div', {}, `up to ${cause.part} ${DATA.residuals.position_unit} of position error` +
-              (cause.small_below ? ` (small: below ${cause.small_below} ${DATA.residuals.position_unit})` : ''))] : [])];
+              (cause.small_below ? ` (small: below ${cause.small_below} ${DATA.residuals.position_unit})` : ''))] : []),
+          ...(cause.withheld ? [element('div', {}, 'not in extended.toml')] : [])];
 }
 
 function drawSummary() {
