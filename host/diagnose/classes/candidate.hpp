@@ -92,6 +92,9 @@ struct Candidate {
   // of the vocabulary: those of a force_map; null where no table holds it.
   void (*describe)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
                    const Eigen::MatrixXd& covariance, Finding&) = nullptr;
+  // The same with more keys, for where runs of the machine fit the better with them; null: there are none.
+  void (*describe_freely)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
+                          const Eigen::MatrixXd& covariance, Finding&) = nullptr;
   bool shape = false;  // whether the scanned parameter is one of the effect's own
   // It goes with acceleration as the inverse dynamics' own errors do: what is no larger than those is none
   // (resolution_of_dynamics).

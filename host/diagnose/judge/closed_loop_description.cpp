@@ -1,6 +1,7 @@
 #include "host/diagnose/judge/closed_loop_description.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include "host/diagnose/classes/candidate_columns.hpp"
@@ -14,12 +15,25 @@ namespace {
 
 constexpr int passes_of_replays = 3;
 
-Finding bare_finding(const SearchContext& context, const Term& term) {
-  const auto& candidate = candidates()[term.candidate];
-  Finding finding(*candidate.effect);
-  finding.axis = context.axis.name;
-  candidate.describe(context, term.shape, term.coefficients, term.covariance, finding);
-  return finding;
+enum class Keys { few, more };  // more: where the candidate has a freer description
+
+std::vector<Finding> bare_findings(const SearchContext& context, const std::vector<Term>& terms, Keys keys) {
+  std::vector<Finding> findings;
+  for (const auto& term : terms) {
+    const auto& candidate = candidates()[term.candidate];
+    auto& finding = findings.emplace_back(*candidate.effect);
+    finding.axis = context.axis.name;
+    const bool freely = keys == Keys::more && candidate.describe_freely;
+    (freely ? candidate.describe_freely : candidate.describe)(context, term.shape, term.coefficients, term.covariance,
+                                                              finding);
+  }
+  return findings;
+}
+
+std::size_t keys_of(const std::vector<Finding>& findings) {
+  std::size_t count = 0;
+  for (const auto& finding : findings) count += finding.parameters.size();
+  return count;
 }
 
 class Description {
@@ -107,12 +121,22 @@ class Description {
 
   // Moves the findings to where runs of the machine fit best; returns what they leave. `left`: what the terms leave.
   Eigen::VectorXd run(ClosedLoopDescription& description, Eigen::VectorXd left) {
-    std::vector<Finding> findings;
-    for (const auto& term : description.terms) findings.push_back(bare_finding(context_, term));
     Eigen::VectorXd aside = Eigen::VectorXd::Zero(rows_.rows());
     for (const auto& term : description.unnamed) aside += force_of(term);
-    auto refined = refine_in_closed_loop(std::move(findings), description.terms, responses_, rows_, target_ - aside,
-                                         std::move(left), context_);
+    const auto refined_with = [&](std::vector<Finding> findings) {
+      return refine_in_closed_loop(std::move(findings), description.terms, responses_, rows_, target_ - aside, left,
+                                   context_);
+    };
+    auto few = bare_findings(context_, description.terms, Keys::few),
+         more = bare_findings(context_, description.terms, Keys::more);
+    const auto further = static_cast<double>(keys_of(more) - keys_of(few));
+    auto refined = refined_with(std::move(few));
+    if (further > 0.0) {
+      // Schwarz 1978.
+      const double price = 0.5 * further * std::log(static_cast<double>(rows_.rows()));
+      auto freely = refined_with(std::move(more));
+      if (freely.response && likelihood(freely.left) > likelihood(refined.left) + price) refined = std::move(freely);
+    }
     description.findings = std::move(refined.findings);
     for (std::size_t k = 0; k < description.terms.size(); ++k) {
       auto& term = description.terms[k];

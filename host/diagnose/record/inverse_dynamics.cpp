@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "host/diagnose/record/elastic_mode.hpp"
 #include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
@@ -125,7 +124,7 @@ machine::AxisModel with_contact_distance(machine::AxisModel axis, double distanc
   if (const auto contact = contact_of(axis))
     sim::stretch_contact(axis.friction, distance / contact->distance);
   else
-    sim::PreslidingHysteresis::change({coulomb_of(axis) * std::numbers::ln10 / distance, distance}, axis);
+    sim::PreslidingHysteresis::change({.stiffness = {}, .distance = distance}, axis);
   return axis;
 }
 

@@ -126,7 +126,8 @@ sim::Chart contact(const machine::Machine& machine, const AxisExtension& axis, c
   chart.x_label = "displacement, µm";
   chart.y_label = "share of Coulomb friction, %";
   chart.caption = "First loading against the previous motion.";
-  const auto [stiffness, distance] = sim::parameters_of<sim::PreslidingHysteresis>(finding.values);
+  const auto keys = sim::parameters_of<sim::PreslidingHysteresis>(finding.values);
+  const double stiffness = keys.stiffness.value(), distance = keys.distance;
   const double coulomb = stiffness * axis.displacement / axis.stiffness_per_force;
   sim::Series extended = of_extended({}), file = of_machine_file({}),
               rows{.name = "rows of presliding, scaled", .x = {}, .y = {}, .points = true};

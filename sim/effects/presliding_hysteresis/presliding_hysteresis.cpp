@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "sim/effects/effect_values.hpp"
 #include "sim/plant/friction/friction.hpp"
@@ -58,9 +59,20 @@ MaxwellSlipParameters presliding_elements(double coulomb, double stiffness, doub
   return elements;
 }
 
-void PreslidingHysteresis::change(const Parameters& p, machine::AxisModel& plant) {
-  machine::FrictionParameters& friction = plant.friction;
-  MaxwellSlipParameters elements = presliding_elements(coulomb_of(friction), p.stiffness, p.distance);
+namespace {
+
+// Stiffness times distance over Coulomb friction; of a law without a contact an exponential curve's.
+double sharpness_of(const machine::FrictionParameters& friction) {
+  const auto contact = contact_of(friction);
+  return contact ? contact->stiffness * contact->distance / contact->level : std::numbers::ln10;
+}
+
+MaxwellSlipParameters elements_of_share(const PreslidingHysteresis::Parameters& p, double level,
+                                        const machine::FrictionParameters& friction) {
+  return presliding_elements(level, p.stiffness.value_or(sharpness_of(friction) * level / p.distance), p.distance);
+}
+
+void replace_law(machine::FrictionParameters& friction, MaxwellSlipParameters elements) {
   elements.viscous = viscous_of(friction);
   with_law_in_use(friction, [&]<class Law>(const typename Law::Parameters& law) {
     if constexpr (requires { law.rise_velocity; }) {
@@ -71,6 +83,33 @@ void PreslidingHysteresis::change(const Parameters& p, machine::AxisModel& plant
   });
   friction.use = MaxwellSlip<>::name;
   friction.models[friction.use] = values_of<MaxwellSlip<>>(elements);
+}
+
+}  // namespace
+
+void PreslidingHysteresis::change(const Parameters& p, machine::AxisModel& plant) {
+  machine::FrictionParameters& friction = plant.friction;
+  const double coulomb = coulomb_of(friction);
+  if (p.share < 1.0) {
+    elements_of_share(p, p.share * coulomb, friction);  // whether they fit
+    const auto before = contact_of(friction);
+    set_coulomb(friction, (1.0 - p.share) * coulomb);
+    // Some laws keep their stiffness at another level.
+    if (before) stretch_contact(friction, before->distance / contact_of(friction)->distance);
+    return;
+  }
+  const auto contact = contact_of(friction);
+  if (contact && !p.stiffness)
+    stretch_contact(friction, p.distance / contact->distance);
+  else
+    replace_law(friction, presliding_elements(coulomb, p.stiffness.value_or(std::numbers::ln10 * coulomb / p.distance),
+                                              p.distance));
+}
+
+PreslidingHysteresis::PreslidingHysteresis(const Parameters& p, Body body, const machine::AxisModel& axis) {
+  if (p.share == 1.0) return;
+  const double level = coulomb_of(axis.friction) * p.share / (1.0 - p.share);
+  contact_.emplace(elements_of_share(p, level, axis.friction), body);
 }
 
 }  // namespace stiction::sim

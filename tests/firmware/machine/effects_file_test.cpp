@@ -287,7 +287,8 @@ TEST(ExtendedMachine, WritesOnlyTheOptionalKeysThatAreGivenAndVoltsForAForceSour
 TEST(ExtendedMachine, TheShippedMachinesTakeEveryEffectButThoseOfAShaft) {
   for (const sim::EffectId kind : sim::all_effects()) {
     Effect one{kind.name(), {}};
-    for (const ValueKey& key : kind->keys) one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : 1e-3};
+    for (const ValueKey& key : kind->keys)
+      one.values[std::string(key.key)] = {key.unit == "N/m" ? 1e7 : key.key == "share" ? 0.5 : 1e-3};
     const std::vector<AxisEffects> every{{"X", {one}}, {"Y", {one}}};
     if (kind.name() == "shaft_stiffness" || kind.name() == "transmission_error") {
       // The motors of this table move their axes directly.

@@ -166,6 +166,21 @@ TEST(Diagnosis, finds_where_along_the_stroke_the_friction_is_higher) {
   EXPECT_LT(worst, 2.4);  // 10 %
 }
 
+// A seal that follows the motion for longer than the guide does: its distance is that to 90 % of an exponential curve.
+TEST(Diagnosis, names_presliding_of_a_share_of_the_friction) {
+  constexpr double share = 0.15, length = 6e-4;  // m
+  const auto verdict = verdict_of({.other_share = share, .other_length = length}, 7, 2);
+  ASSERT_EQ(names_of(verdict), "presliding_hysteresis") << rejections_of(verdict);
+  const auto& found = verdict.findings.front().values;
+  ASSERT_EQ(found.count("share"), 1U);
+  const double distance = length * std::log(10.0);
+  figure("diagnosis of presliding of a share of the friction",
+         fmt::format("share {:.3f}, distance {:.3f} mm, hidden {:.3f}, {:.3f} mm", found.at("share")[0],
+                     1e3 * found.at("distance")[0], share, 1e3 * distance));
+  EXPECT_NEAR(found.at("share")[0], share, 0.2 * share);
+  EXPECT_NEAR(found.at("distance")[0], distance, 0.2 * distance);
+}
+
 // 18 N more on 6 mm of the guide, as a squared cosine: no shape that is looked for.
 TEST(Diagnosis, names_a_tight_spot_by_its_place) {
   constexpr double place = 0.083, half = 3e-3;  // m

@@ -73,7 +73,7 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<double> force, position;
-  double x = 0.0, z = 0.0, measured = 0.0, followed = 0.0;
+  double x = 0.0, z = 0.0, other_z = 0.0, measured = 0.0, followed = 0.0;
   const auto steps = static_cast<int>(duration / fine);
   for (int k = 0; k < steps; ++k) {
     const double t = k * fine, v = speed_at(trajectory, t);
@@ -83,11 +83,13 @@ host::Log synthetic_log(int trajectory, const Hidden& hidden, double noise_rms, 
     x += moved;
     const double sign = moved < 0.0 ? -1.0 : 1.0;
     z = sign + (z - sign) * std::exp(-std::abs(moved) / hidden.contact_length);
+    other_z = sign + (other_z - sign) * std::exp(-std::abs(moved) / hidden.other_length);
     measured = std::clamp(measured, x - 0.5 * hidden.lost_motion, x + 0.5 * hidden.lost_motion);
     const Point point{t, x, v, a, z};
     followed = hidden.friction_lag > 0.0 ? v + (followed - v) * std::exp(-fine / hidden.friction_lag) : v;
-    const double needed = hidden.mass * a + hidden.coulomb * z + hidden.viscous * followed -
-                          hidden.other_mass * other_at(t).a + (hidden.force ? hidden.force(point) : 0.0);
+    const double contact = hidden.coulomb * (z + hidden.other_share * (other_z - z));
+    const double needed = hidden.mass * a + contact + hidden.viscous * followed - hidden.other_mass * other_at(t).a +
+                          (hidden.force ? hidden.force(point) : 0.0);
     force.push_back(hidden.constant_ripple ? needed / (1.0 + hidden.constant_ripple(x)) : needed);
     position.push_back(measured + (hidden.reading_error ? hidden.reading_error(measured) : 0.0));
   }

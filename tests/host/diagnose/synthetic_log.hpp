@@ -22,6 +22,7 @@ struct Point {
 struct Hidden {
   double mass = 225.0, coulomb = 90.0, viscous = 500.0;  // kg, N, N s/m: true values
   double contact_length = 90.0 / 8e5;                    // m
+  double other_share = 0.0, other_length = 1.0;          // m: of Coulomb friction, with a contact of its own length
   std::function<double(const Point&)> force{};           // N, what the motor must give besides; none: nothing
   double delay = 0.0;                                    // s, of the recorded current
   double lost_motion = 0.0;                              // m

@@ -172,6 +172,55 @@ TEST(PreslidingHysteresis, TakesTheTrueCoulombLevelWhereverThatStandsInTheFile) 
   EXPECT_NEAR(force_at(axis, 0.1), 25.0 + 100.0 * 0.1, 2e-3);
 }
 
+TEST(PreslidingHysteresis, WithADistanceAloneTheLawStaysAndItsContactIsDrawnOut) {
+  for (const char* model : {"lugre", "maxwell_slip"}) {
+    machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"distance", {40e-6}}}}});
+    axis.friction.use = model;
+    const auto friction = plant_axis(axis).friction;
+    EXPECT_EQ(friction.use, model);
+    EXPECT_NEAR(contact_of(friction)->distance, 40e-6, 1e-9) << model;
+    EXPECT_NEAR(coulomb_of(friction), coulomb_of(axis.friction), 1e-12) << model;
+  }
+}
+
+// From rest the force of both parts rises as 1 - 10^(-x / distance), each to its share of the level: an exponential
+// contact and, in parallel, the polygon of tangents of one, which lies up to 2 % of its level outside.
+TEST(PreslidingHysteresis, OfAShareAddsUpWithTheRestOfTheFriction) {
+  constexpr double level = 20.0, own = 10e-6, of_share = 200e-6, share = 0.3, speed = 200e-6;
+  auto axis = with_effects({{"presliding_hysteresis", {{"distance", {of_share}}, {"share", {share}}}}});
+  axis.friction.use = "lugre";
+  set_parameters<LuGre<>>(axis.friction, {level, 1.0, 0.0, 0.01, level * std::log(10.0) / own, 0.0});
+  AxisPlant plant(timing, axis, 0.0, 1);
+  double set = 0.0;
+  for (int k = 0; set < 2.0 * of_share; ++k) {
+    set += speed * tick;
+    const double force = 4e6 * (set - plant.position()) + 2e4 * (speed - plant.velocity());
+    plant.command({force / axis.motor.force_constant, 0.0, 0.0}, true);
+    plant.advance_tick();
+    const auto loaded = [&](double distance) { return 1.0 - std::pow(10.0, -plant.position() / distance); };
+    const double textbook = level * ((1.0 - share) * loaded(own) + share * loaded(of_share));
+    ASSERT_NEAR(plant.friction_force(), textbook, 0.02 * share * level + 0.05) << plant.position();
+  }
+}
+
+TEST(PreslidingHysteresis, OfAShareKeepsTheSteadyFrictionOfEachLaw) {
+  for (const char* model : {"coulomb_viscous", "classical", "lugre", "maxwell_slip"}) {
+    machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"distance", {5e-6}}, {"share", {0.25}}}}});
+    axis.friction.use = model;
+    EXPECT_EQ(plant_axis(axis).friction.use, model);
+    EXPECT_NEAR(force_at(axis, 0.1), 20.0 + 100.0 * 0.1, 2e-3) << model;
+  }
+}
+
+TEST(PreslidingHysteresis, OfAShareIsRefusedWhereItsStiffnessAndDistanceDoNotReachItsLevel) {
+  const auto with_stiffness = [](double stiffness) {
+    return with_effects(
+        {{"presliding_hysteresis", {{"stiffness", {stiffness}}, {"distance", {5e-6}}, {"share", {0.25}}}}});
+  };
+  EXPECT_THROW(plant_axis(with_stiffness(0.8 * 5.0 / 5e-6)), EffectError);
+  EXPECT_NO_THROW(plant_axis(with_stiffness(1.0 * 5.0 / 5e-6)));
+}
+
 TEST(PreslidingHysteresis, TheParabolicModelHasNoCoulombLevelForIt) {
   machine::AxisModel axis = with_effects({{"presliding_hysteresis", {{"stiffness", {1e7}}, {"distance", {5e-6}}}}});
   axis.friction.use = "parabolic";
