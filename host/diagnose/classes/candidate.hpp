@@ -95,6 +95,9 @@ struct Candidate {
   // The same with more keys, for where runs of the machine fit the better with them; null: there are none.
   void (*describe_freely)(const SearchContext&, double shape, const Eigen::VectorXd& coefficients,
                           const Eigen::MatrixXd& covariance, Finding&) = nullptr;
+  // Values (of the effect's keys) near the given ones from which runs may begin, where columns tell them roughly; null:
+  // they tell them well.
+  std::vector<machine::KeyedValues> (*starts)(const machine::KeyedValues&) = nullptr;
   bool shape = false;  // whether the scanned parameter is one of the effect's own
   // It goes with acceleration as the inverse dynamics' own errors do: what is no larger than those is none
   // (resolution_of_dynamics).

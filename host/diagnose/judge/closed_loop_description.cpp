@@ -100,12 +100,26 @@ class Description {
   }
 
   // Fits the terms that the description has, those with a name in closed loop; returns what is left. What a coarse
-  // description leaves is no noise: first the force counts as it is, then by the noise that this has left, under which
-  // what replays does so anew.
+  // description leaves is no noise: from the terms as they are, by the noise that they leave, and from where the force
+  // as it is puts them, by the noise that this has left; the likelier counts. Under that noise what replays does so
+  // anew.
   Eigen::VectorXd describe(ClosedLoopDescription& description) {
     auto terms = description.terms;
     terms.insert(terms.end(), description.unnamed.begin(), description.unnamed.end());
-    auto left = refine(rows_, Evidence(target_, blocks()), context_, terms);
+    auto as_it_is = terms;
+    Eigen::VectorXd left = target_;
+    for (const auto& term : terms) left -= force_of(term);
+    left = settled(terms, std::move(left));
+    auto of_force = settled(as_it_is, refine(rows_, Evidence(target_, blocks()), context_, as_it_is));
+    if (likelihood(of_force) > likelihood(left)) terms = std::move(as_it_is), left = std::move(of_force);
+    const auto named = static_cast<std::ptrdiff_t>(description.terms.size());
+    description.terms.assign(terms.begin(), terms.begin() + named);
+    description.unnamed.assign(terms.begin() + named, terms.end());
+    return run(description, std::move(left));
+  }
+
+  // The terms' best fit by the noise that the one before has left; returns what is left.
+  Eigen::VectorXd settled(std::vector<Term>& terms, Eigen::VectorXd left) const {
     const bool replays = context_.disturb && std::any_of(terms.begin(), terms.end(), [](const Term& term) {
                            return candidates()[term.candidate].replays;
                          });
@@ -113,10 +127,7 @@ class Description {
       if (replays) context_.disturb(left);
       left = refine(rows_, evidence_of(target_, left), context_, terms);
     }
-    const auto named = static_cast<std::ptrdiff_t>(description.terms.size());
-    description.terms.assign(terms.begin(), terms.begin() + named);
-    description.unnamed.assign(terms.begin() + named, terms.end());
-    return run(description, std::move(left));
+    return left;
   }
 
   // Moves the findings to where runs of the machine fit best; returns what they leave. `left`: what the terms leave.

@@ -31,9 +31,10 @@ class ClosedLoopFit {
       : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
     for (std::size_t k = 0; k < findings_.size(); ++k) {
       const auto& term = terms[k];
-      if (described_by_runs(term))
+      if (described_by_runs(term)) {
         free_parameters(k);
-      else
+        add_starts(candidates()[term.candidate]);
+      } else
         target_ -= weighted_columns(rows, context, candidates()[term.candidate], term.shape, term.coefficients);
     }
   }
@@ -43,6 +44,7 @@ class ClosedLoopFit {
   // after them by the noise that the first have left.
   double run() {
     if (free_.empty()) return -std::numeric_limits<double>::infinity();
+    begin_at_likeliest();
     auto first = around(start());
     first.push_back(start());
     foresee(first);
@@ -105,6 +107,27 @@ class ClosedLoopFit {
         free_.push_back({effects_.size() - 1, p, parameters[p].key, i});
   }
 
+  // Other values of the effect that was freed last.
+  void add_starts(const Candidate& candidate) {
+    if (candidate.starts == nullptr) return;
+    for (auto& values : candidate.starts(effects_.back().values)) {
+      starts_.push_back(effects_);
+      starts_.back().back().values = std::move(values);
+    }
+  }
+  // Of the effects as their columns have them, and with the values from which one may begin.
+  void begin_at_likeliest() {
+    if (starts_.empty()) return;
+    for (auto& each : starts_)
+      each.insert(each.end(), effects_.begin() + static_cast<std::ptrdiff_t>(each.size()), effects_.end());
+    response_.foresee(rows_.motions(), starts_);
+    auto best = effects_;
+    double most = likelihood(target_ - simulated(effects_));
+    for (const auto& each : starts_)
+      if (const double now = likelihood(target_ - simulated(each)); now > most) most = now, best = each;
+    effects_ = std::move(best);
+  }
+
   Eigen::VectorXd start() const {
     Eigen::VectorXd at(static_cast<Eigen::Index>(free_.size()));
     for (std::size_t i = 0; i < free_.size(); ++i)
@@ -118,8 +141,8 @@ class ClosedLoopFit {
     return effects;
   }
   // N, of the rows; infinite where the effects cannot have these values.
-  Eigen::VectorXd simulated(const Eigen::VectorXd& at) {
-    const auto effects = effects_at(at);
+  Eigen::VectorXd simulated(const Eigen::VectorXd& at) { return simulated(effects_at(at)); }
+  Eigen::VectorXd simulated(const std::vector<machine::Effect>& effects) {
     try {
       response_.foresee(rows_.motions(), {&effects, 1});
       return rows_.stacked([&](const Motion& motion) { return response_.together(motion, effects); });
@@ -215,7 +238,8 @@ class ClosedLoopFit {
   EffectResponse& response_;
   const LogRows& rows_;
   Eigen::VectorXd target_, left_;
-  std::vector<machine::Effect> effects_;  // of the findings that are simulated
+  std::vector<machine::Effect> effects_;                // of the findings that are simulated
+  std::vector<std::vector<machine::Effect>> starts_{};  // the same with other values
   std::vector<std::size_t> of_finding_;
   std::vector<Free> free_;
   Whitening whitening_;

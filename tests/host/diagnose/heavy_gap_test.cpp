@@ -40,7 +40,9 @@ TEST(HeavyGap, IsNamedAndItsWidthIsWithinItsError) {
   ASSERT_TRUE(found.row().values.contains("mass_ratio"));
   const double value = found.parameters.front().values.front(),
                error = found.parameters.front().standard_errors.front();
-  test::figure("a gap of 5 um in front of a heavy slide", fmt::format("{:.2f} +- {:.2f} um", 1e6 * value, 1e6 * error));
+  test::figure("a gap of 5 um in front of a heavy slide",
+               fmt::format("{:.2f} +- {:.2f} um; {:.3f} of the mass behind it", 1e6 * value, 1e6 * error,
+                           found.row().values.at("mass_ratio")[0]));
   EXPECT_NEAR(value, width, 2.0 * error);
   EXPECT_LT(error, 0.5 * value);
 }
