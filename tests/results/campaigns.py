@@ -1,10 +1,18 @@
-"""The output of the blind campaign, as runs for campaigns.toml."""
+"""The output of the blind campaign and of that of the second truth, as runs for campaigns.toml."""
 
 import datetime
+import json
+import pathlib
 import re
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "second_truth"))
+
+import counts  # noqa: E402
 
 # What the engine of a campaign is made of: the last commit that touched one of these names it.
-ENGINE = ["firmware/include", "firmware/machine", "host", "sim", "tests/blind"]
+DIAGNOSIS = ["firmware/include", "firmware/machine", "host", "sim"]
+ENGINE = [*DIAGNOSIS, "tests/blind"]
 
 # The headings of tests/blind/campaign_report.cpp: the kind, and the name of the count below each.
 KINDS = {"nothing hidden": "null", "one at 50 %": "one50", "one at 10 %": "one10", "one at 5 %": "one5",
@@ -54,3 +62,24 @@ def read_log(seed, text, git):
     if not runs:
         raise NotKept("the campaign's output has no counts")
     return list(runs.values())
+
+
+def read_lines(commit, date, text):
+    """The runs in the lines of results of the second truth, one for each kind of case; of the engine at `commit`."""
+    lines = [line for line in map(json.loads, text.splitlines()) if "error" not in line]
+    if not lines:
+        raise NotKept("the campaign has no line with a verdict")
+    runs = []
+    for kind in sorted({counts.group(line) for line in lines}):
+        of_kind = [line for line in lines if counts.group(line) == kind]
+        runs.append({"campaign": "second_truth", "kind": kind, "seed": min(line["seed"] for line in of_kind),
+                     "cases": len(of_kind), "commit": commit, "date": date, "counts": counts.shares(of_kind),
+                     "means": {name: [round(mean, 1), n] for name, (mean, n) in counts.means(of_kind).items()}})
+    return runs
+
+
+def engine_commit(git):
+    """The last commit of the diagnosis; NotKept when it has changes that no commit has."""
+    if git("status", "--porcelain", "--", *DIAGNOSIS):
+        raise NotKept(f"the counts are not kept, because {', '.join(DIAGNOSIS)} have changes without a commit")
+    return git("log", "-1", "--format=%h", "--abbrev=7", "--", *DIAGNOSIS)

@@ -13,7 +13,7 @@ from claims import FOLDER
 
 HEAD = {
     "kept.toml": "# The newest run of every source. Written by `toolchain/test --results`; not edited by hand.\n",
-    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/suites/blind CASES SEED [KIND]`, not by hand.\n",
+    "campaigns.toml": "# Runs of campaigns. Written by `toolchain/suites/blind` and `second_truth`, not by hand.\n",
 }
 
 

@@ -8,6 +8,7 @@ usage: results.py collect SOURCE...      takes what these have printed into kept
        results.py check [BUILD]          what a row lacks, commands that do not exist (BUILD: build/release), and whether
                                          docs/results.md is what the kept data make
        results.py blind SEED LOG         keeps a blind campaign's counts and writes docs/results.md
+       results.py second-truth LINES     the same of the second truth's lines of results
 """
 
 import datetime
@@ -177,6 +178,9 @@ def main(words):
                 return check(build[0] if build else ROOT / "build/release")
             case ["blind", seed, log]:
                 return keep_runs(campaigns.read_log(seed, pathlib.Path(log).read_text(encoding="utf-8"), git))
+            case ["second-truth", lines]:
+                text = pathlib.Path(lines).read_text(encoding="utf-8")
+                return keep_runs(campaigns.read_lines(campaigns.engine_commit(git), str(datetime.date.today()), text))
     except (ClaimError, campaigns.NotKept) as error:
         print(f"results: {error}")
         return 1

@@ -3,6 +3,7 @@
 
 import contextlib
 import io
+import json
 import pathlib
 import tempfile
 import unittest
@@ -208,6 +209,49 @@ class Campaigns(unittest.TestCase):
             low, high = store.wilson(k, n)
             self.assertAlmostEqual(low, 100 * truth.low, 4)
             self.assertAlmostEqual(high, 100 * truth.high, 4)
+
+
+class RunsOfTheSecondTruth(unittest.TestCase):
+    """Lines of results as tests/second_truth/scoring.py writes them."""
+
+    @staticmethod
+    def line(seed, **facts):
+        findings = [{"effect": "mass_mismatch", "parameters": {"mass_kg": 11.0}, "standard_errors": {"mass_kg": 0.2},
+                     "probability": 1.0, "confused_with": [], "holdout_gain": {}}]
+        return {"key": f"single {seed} 0.1 with set-points", "kind": "single", "seed": seed, "share": 0.1,
+                "hidden": ["mass_mismatch"], "unknown": [], "names": ["mass_mismatch"], "confused": [],
+                "probability": 1.0, "cannot_tell": False, "first_right": True, "confused_right": False, "found": 1,
+                "false": [], "tolerated": [], "exact": True, "parameters": {"mass_mismatch": {"mass": 11.3}},
+                "held_out_force": [4.0, 3.0], "findings": findings, "baseline": {"force_rms_N": 2.0},
+                "extended": {"force_rms_N": 1.8}} | facts
+
+    def read(self, *lines):
+        return campaigns.read_lines("abc", "2026-01-01", "\n".join(map(json.dumps, lines)))
+
+    def test_are_kept_by_kind(self):
+        wrong = {"names": ["stribeck"], "first_right": False, "exact": False}
+        runs = self.read(self.line(7), self.line(8, **wrong), self.line(9, share=0.02), self.line(10, error="none"))
+        self.assertEqual([run["kind"] for run in runs], ["single10", "single2"])
+        self.assertEqual(runs[0]["counts"]["first_right"], [1, 2])
+        self.assertEqual(runs[0]["counts"]["first_wrong"], [1, 2])
+        self.assertEqual((runs[0]["seed"], runs[0]["cases"], runs[0]["commit"]), (7, 2, "abc"))
+
+    def test_have_the_gain_as_a_share_of_the_oracles(self):
+        # 1 - 1.8^2 / 2^2 of 1 - 3 / 4.
+        self.assertEqual(self.read(self.line(7))[0]["means"]["gain"], [76.0, 1])
+
+    def test_have_an_interval_where_truth_and_verdict_have_the_same_number(self):
+        off = {"parameters": {"mass_mismatch": {"mass": 11.5}}}
+        self.assertEqual(self.read(self.line(7), self.line(8, **off))[0]["counts"]["intervals"], [1, 2])
+
+    def test_of_what_an_observer_cannot_tell_count_apart(self):
+        counted = self.read(self.line(7, cannot_tell=True, names=[], findings=[], first_right=False))[0]["counts"]
+        self.assertEqual(counted["apart_silent"], [1, 1])
+        self.assertNotIn("first_right", counted)
+
+    def test_are_of_an_engine_without_changes(self):
+        with self.assertRaisesRegex(campaigns.NotKept, "changes without a commit"):
+            campaigns.engine_commit(lambda *words: " M host/diagnose/diagnose.cpp")
 
 
 class CommandsThere(unittest.TestCase):
