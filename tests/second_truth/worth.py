@@ -14,8 +14,18 @@ NUMBERS = {
     "backlash": ("width", "width"), "structural_resonance": ("frequency_Hz", "frequency"),
     "time_skew": ("delay", "delay"), "periodic_disturbance": ("frequency_Hz", "frequency"),
     "master_delay": ("delay", "delay")}
+# Of these the truth has several harmonics, and each that was found is a wave of its own.
+LONGEST = {"force_ripple", "force_constant_ripple", "encoder_subdivision_error"}
+SLOWEST = {"periodic_disturbance"}
 LEAST_GAIN = 0.005  # of the held-out variance, below which the noise of a record decides what a gain is
 WORSE = 1.1  # times the file's error in held-out position
+
+
+def of_first_harmonic(effect, value, truth):
+    """Factor that makes a wave's length or frequency that of the first harmonic."""
+    if effect in LONGEST:
+        return max(1, round(truth / value))
+    return 1 / max(1, round(value / truth)) if effect in SLOWEST else 1
 
 
 def intervals(line):
@@ -29,7 +39,8 @@ def intervals(line):
         for key, value in finding["parameters"].items():
             error = (finding["standard_errors"] or {}).get(key)
             if key.removeprefix(names[1] + "_") in UNITS and error:
-                out.append(abs(value - truth[names[0]]) <= NORMAL * error)
+                times = of_first_harmonic(finding["effect"], value, truth[names[0]])
+                out.append(abs(times * value - truth[names[0]]) <= NORMAL * times * error)
     return out
 
 

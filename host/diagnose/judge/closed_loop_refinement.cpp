@@ -22,13 +22,20 @@ struct Free {
   std::size_t parameter;  // of the finding
   std::string key;        // of the effect
   std::size_t index;      // of the key's values
+  double unit;            // that of the linear axis, in which runs have it, in one of the parameter's own
 };
+
+double own_unit(const machine::AxisModel& axis, sim::EffectId effect, std::string_view key) {
+  const auto known = std::find_if(effect->keys.begin(), effect->keys.end(),
+                                  [&](const machine::ValueKey& each) { return each.key == key; });
+  return axis.coordinate.own(sim::key_unit(*known, axis)).factor;
+}
 
 class ClosedLoopFit {
  public:
   ClosedLoopFit(std::vector<Finding> findings, std::span<const Term> terms, EffectResponse& response,
                 const LogRows& rows, const Eigen::VectorXd& target, const SearchContext& context)
-      : findings_(std::move(findings)), response_(response), rows_(rows), target_(target) {
+      : findings_(std::move(findings)), axis_(context.axis), response_(response), rows_(rows), target_(target) {
     for (std::size_t k = 0; k < findings_.size(); ++k) {
       const auto& term = terms[k];
       if (described_by_runs(term)) {
@@ -104,7 +111,8 @@ class ClosedLoopFit {
     const auto& parameters = findings_[finding].parameters;
     for (std::size_t p = 0; p < parameters.size(); ++p)
       for (std::size_t i = 0; i < parameters[p].standard_errors.size(); ++i)
-        free_.push_back({effects_.size() - 1, p, parameters[p].key, i});
+        free_.push_back({effects_.size() - 1, p, parameters[p].key, i,
+                         own_unit(axis_, findings_[finding].effect, parameters[p].key)});
   }
 
   // Other values of the effect that was freed last.
@@ -165,7 +173,8 @@ class ClosedLoopFit {
   // A standard error of a parameter, within 1e-5 to a tenth of its size.
   double step_of(Eigen::Index i, const Eigen::VectorXd& at) const {
     const auto& free = free_[static_cast<std::size_t>(i)];
-    const double error = findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
+    const double error =
+        free.unit * findings_[of_finding_[free.finding]].parameters[free.parameter].standard_errors[free.index];
     const double size = size_of(i, at);
     const double by = std::isfinite(error) && error > 0.0 ? error : 0.01 * size;
     return size > 0.0 ? std::clamp(by, 1e-5 * size, 0.1 * size) : by;
@@ -228,13 +237,15 @@ class ClosedLoopFit {
       auto& finding = findings_[of_finding_[free_[i].finding]];
       auto& parameter = finding.parameters[free_[i].parameter];
       const auto k = static_cast<Eigen::Index>(i);
-      finding.values.at(free_[i].key)[free_[i].index] = parameter.values[free_[i].index] = at[k];
+      finding.values.at(free_[i].key)[free_[i].index] = at[k];
+      parameter.values[free_[i].index] = at[k] / free_[i].unit;
       auto& error = parameter.standard_errors[free_[i].index];
-      error = std::max(error, std::sqrt(std::max(covariance(k, k), 0.0)));
+      error = std::max(error, std::sqrt(std::max(covariance(k, k), 0.0)) / free_[i].unit);
     }
   }
 
   std::vector<Finding> findings_;
+  const machine::AxisModel& axis_;
   EffectResponse& response_;
   const LogRows& rows_;
   Eigen::VectorXd target_, left_;

@@ -170,7 +170,7 @@ TEST(Effects, HaveTheNamesKeysAndSuffixesOfTheVocabulary) {
             "viscous_nonlinear: force_N velocity_m_per_s\n"
             "stribeck: break_away_N velocity_m_per_s\n"
             "friction_asymmetry: coulomb_N viscous_N_s_per_m\n"
-            "presliding_hysteresis: stiffness_N_per_m distance_m\n"
+            "presliding_hysteresis: stiffness_N_per_m distance_m share\n"
             "friction_lag: time_s\n"
             "position_dependent_friction: position_m[] force_N[]\n"
             "thermal_drift: change_N time_constant_s elapsed_s\n"

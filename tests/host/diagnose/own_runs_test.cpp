@@ -7,10 +7,13 @@
 
 #include "host/diagnose/classes/candidate.hpp"
 #include "host/diagnose/judge/closed_loop_description.hpp"
+#include "host/diagnose/judge/closed_loop_refinement.hpp"
 #include "host/diagnose/record/effect_response.hpp"
 #include "host/diagnose/record/record.hpp"
 #include "host/diagnose/record/record_rows.hpp"
 #include "host/diagnose/record/replay_setup.hpp"
+#include "sim/effects/effect_values.hpp"
+#include "sim/effects/mass_mismatch/mass_mismatch.hpp"
 #include "sim/effects/presliding_hysteresis/presliding_hysteresis.hpp"
 #include "sim/effects/structural_resonance/structural_resonance.hpp"
 #include "tests/support/shipped_machine.hpp"
@@ -131,6 +134,44 @@ TEST(OwnRuns, BearOutNoTermThatTheyDoNotShow) {
   EXPECT_TRUE(description.terms.empty());
   EXPECT_TRUE(description.findings.empty());
   EXPECT_EQ(description.remainders.size(), 1U);
+}
+
+// Runs have linear axes; what they move is shown in units of the axis itself, here a joint whose radian is 0.25 m long.
+TEST(OwnRuns, MoveParametersInTheUnitsOfTheAxis) {
+  auto machine = coarse_axis();
+  auto& axis = machine.axes.front();
+  axis.coordinate = {machine::AxisKind::rotary, 0.25};
+  axis.encoder.increment = 0.0;
+  Record record;
+  record.logs = {recorded_elsewhere(machine)};
+  const auto settings = signals_in(host::RowBand::usual, record.logs);
+  measure(record, axis, settings);
+  const auto motion = drive(record, machine, 0);
+  ASSERT_FALSE(motion.empty());
+  regress_on(record, motion, axis, settings);
+  std::vector<EffectResponse> responses;
+  responses.emplace_back(machine, 0, record.driven, settings, FrictionAlong::own_motion);
+  const double mass = 1.03 * axis.mass, found = 1.01 * axis.mass;
+  const std::vector<machine::Effect> hidden{sim::effect_of<sim::MassMismatch>({.mass = mass})};
+  const Eigen::VectorXd target =
+      record.regressors.stacked([&](const Motion& one) { return responses[0].together(one, hidden); });
+  SearchContext context;
+  context.axis = axis;
+  context.signals = settings;
+  Term term;
+  term.candidate = *candidate_index(sim::id_of<sim::MassMismatch>());
+  term.coefficients = Eigen::VectorXd::Constant(1, found - axis.mass);
+  term.covariance = Eigen::MatrixXd::Constant(1, 1, std::pow(1e-3 * axis.mass, 2));
+  Finding finding(sim::id_of<sim::MassMismatch>());
+  finding.axis = axis.name;
+  candidates()[term.candidate].describe(context, 0.0, term.coefficients, term.covariance, finding);
+  const Eigen::VectorXd left = target * (mass - found) / (mass - axis.mass);
+  const auto refined = refine_in_closed_loop({finding}, {&term, 1}, responses, record.regressors, target, left, context)
+                           .findings.front();
+  EXPECT_NEAR(refined.values.at("mass")[0], mass, 1e-3 * mass);
+  ASSERT_EQ(refined.parameters.front().unit, "kg m^2");
+  EXPECT_NEAR(refined.parameters.front().values[0], mass * 0.25 * 0.25, 1e-3 * mass * 0.25 * 0.25);
+  EXPECT_LT(refined.parameters.front().standard_errors[0], 2e-3 * mass * 0.25 * 0.25);
 }
 
 // The fastest motion of an axis without set-points is the loop's answer to what disturbs it, in which a mode would
