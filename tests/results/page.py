@@ -22,16 +22,19 @@ def bound_of(row):
     return "reported; " + row.bound[len("none:"):].strip() if row.bound.startswith("none:") else row.bound
 
 
+def missed_by(row, value):
+    if not (row.limits and row.limits[0]):
+        return ""
+    relation, bound = row.limits[0].split()
+    return "" if (value <= float(bound) if relation == "<=" else value >= float(bound)) else " (**missed**)"
+
+
 def share_text(row, found):
     if "k" not in found:
-        return f"{found['mean']:.1f} {row.unit}", f"{found['n']} cases"
+        return f"{found['mean']:.1f} {row.unit}{missed_by(row, found['mean'])}", f"{found['n']} cases"
     low, high = store.wilson(found["k"], found["n"])
     share = 100.0 * found["k"] / found["n"]
-    missed = ""
-    if row.limits and row.limits[0]:
-        relation, bound = row.limits[0].split()
-        missed = "" if (share <= float(bound) if relation == "<=" else share >= float(bound)) else " (**missed**)"
-    return f"{share:.1f} %{missed}", f"{found['k']} of {found['n']}, {low:.1f} to {high:.1f} %"
+    return f"{share:.1f} %{missed_by(row, share)}", f"{found['k']} of {found['n']}, {low:.1f} to {high:.1f} %"
 
 
 def campaign_row(row, runs):

@@ -74,7 +74,7 @@ def shares(lines):
     for low, high in LIKELY:
         rows = [line for line in lines if told(line) and line["probability"] and low <= line["probability"] < high]
         if rows:
-            out[f"said_{low:.1f}"] = [sum(line["first_right"] for line in rows), len(rows)]
+            out[f"said_{100 * low:.0f}"] = [sum(line["first_right"] for line in rows), len(rows)]
     covers = [inside for line in lines if line["kind"] == "single" for inside in worth.intervals(line)]
     if covers:
         out["intervals"] = [sum(covers), len(covers)]
@@ -99,7 +99,7 @@ def texts():
     """{name: what it is} of all counts and means."""
     out = {name: text for name, text, _, _ in SHARES}
     out["found"] = "pairs, triples: causes found"
-    out.update({f"said_{low:.1f}": f"named with a probability of {low:.1f} to {min(high, 1.0):.1f}: right"
+    out.update({f"said_{100 * low:.0f}": f"named with a probability of {low:.1f} to {min(high, 1.0):.1f}: right"
                 for low, high in LIKELY})
     out["intervals"] = "95 % intervals that cover"
     return out | {"gain": "held-out gain of an oracle's, %", "map_gain": "the same of functions without a name, %",
