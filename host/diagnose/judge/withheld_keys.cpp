@@ -47,9 +47,10 @@ void withhold_what_follows_worse(std::vector<Finding>& findings, const ReplaySet
     double least = never;
     for (auto& finding : findings) {
       if (!finding.withheld.empty()) continue;
-      finding.withheld = "tried";
-      const double left = errors(setup, written_findings(findings), measured, disturbance).mean();
-      finding.withheld.clear();
+      std::vector<Finding> others;
+      for (const auto& other : findings)
+        if (other.withheld.empty() && &other != &finding) others.push_back(other);
+      const double left = errors(setup, others, measured, disturbance).mean();
       if (!worst || left < least) worst = &finding, least = left;
     }
     worst->withheld = std::isfinite(with.mean()) ? fmt::format(

@@ -55,7 +55,7 @@ Columns columns(const SearchContext& context, const Motion& motion, double width
 // however often it is linearised anew: the dither of a loop on coarse counts is alike in simulation and record and
 // shrinks it.
 bool possible(const SearchContext& context, double width, const Eigen::VectorXd& w) {
-  constexpr double reach = 8.0;
+  constexpr double reach = 16.0;
   return w[0] > width / reach && w[0] > scale_of(context.axis) * near / reach && w[0] < reach * width;
 }
 bool coarse(const SearchContext& context, double width) { return width >= scale_of(context.axis) * far; }
